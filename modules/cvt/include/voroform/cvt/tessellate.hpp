@@ -1,0 +1,83 @@
+// The clipped centroidal Voronoi tessellation of an implicit form: initial sites, optimization, clipping, complex.
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "voroform/core/run_context.hpp"
+#include "voroform/implicit/implicit_function.hpp"
+#include "voroform/implicit/roots.hpp"
+#include "voroform/mesh/polyhedral_complex.hpp"
+#include "voroform/voronoi/clip.hpp"
+
+namespace voroform::cvt {
+
+enum class Optimizer { lbfgs, lloyd };
+
+enum class StopReason {
+  iterations,      // the number of iterations asked for was done
+  converged,       // rms‖cᵢ − xᵢ‖/h fell below the tolerance
+  relativeError,   // (E − E_m)/E_m fell below the one asked for (thesis, Algorithm 1)
+  stalled,         // the line search found no lower energy (implicit domains: the gradient lacks a small cap term)
+};
+const char* toString(StopReason reason);
+
+struct TessellateOptions {
+  // Number of sites, at least 1.
+  Index sites = 1000;
+  // Iterations of the optimizer, at least 0; 0 clips the initial sites.
+  int iterations = 10;
+  Optimizer optimizer = Optimizer::lbfgs;
+  // Caps of the result. The optimization itself always uses CapKind::flat, the cheapest.
+  voronoi::CapKind cap = voronoi::CapKind::cvt3;
+  implicit::RootFinder rootFinder = implicit::RootFinder::itp;
+  // Stop when rms‖cᵢ − xᵢ‖/h is at most this; 0 never stops for it.
+  double convergence = 5e-4;
+  // Stop when (E − E_m)/E_m is at most this; 0 never stops for it.
+  double relativeError = 0;
+  // How often sites without a cell may be moved into the largest cells.
+  int reseedRounds = 3;
+  // Memory the run may take, in bytes; a larger estimate throws EnvironmentError before anything is allocated. 0: the
+  // machine's available memory.
+  std::uint64_t memoryLimit = 0;
+  std::uint64_t seed = 0;
+};
+// Every violation of the options, as sentences naming field, value and rule; empty if there is none.
+std::vector<std::string> validate(const TessellateOptions& options);
+
+struct IterationRecord {
+  double energy = 0;         // E, in units⁵
+  double rmsMove = 0;        // rms‖cᵢ − xᵢ‖/h
+  int evaluations = 0;       // of the energy, in all so far
+};
+
+struct TessellateSummary {
+  StopReason stop = StopReason::iterations;
+  std::vector<IterationRecord> iterations;  // the first for the initial sites
+  double energy = 0;          // of the returned tessellation's sites, with flat caps
+  double optimalEnergy = 0;   // E_3 = 3·n·(V/n)^(5/3)·G₃
+  double relativeError = 0;   // (energy − optimalEnergy)/optimalEnergy
+  int evaluations = 0;
+  Index reseededSites = 0;
+  Index emptySites = 0;       // sites without a cell at the end: dropped
+  voronoi::ClipSummary clip;
+  double secondsInitial = 0;
+  double secondsOptimization = 0;
+  double secondsClipping = 0;
+};
+
+struct TessellateResult {
+  mesh::PolyhedralComplex complex;  // cell i belongs to complex.cellSites[i]
+  TessellateSummary summary;
+};
+
+// The same bits for any number of threads. Throws UsageError on bad options, MethodError if f has no inside that the
+// sites could be placed in, EnvironmentError if the memory does not suffice, Cancelled.
+TessellateResult tessellate(const implicit::ImplicitFunction& f, const Frame& frame, const TessellateOptions& options,
+                            const RunContext& context);
+
+// Peak memory in bytes that tessellate is estimated to take for n sites.
+std::uint64_t estimatedMemory(Index sites);
+
+}  // namespace voroform::cvt
