@@ -12,6 +12,8 @@ set(VOROFORM_MAY_USE_metrics core mesh implicit voronoi cvt)
 add_library(voroform_flags INTERFACE)
 target_compile_options(voroform_flags INTERFACE
   -Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wno-sign-conversion
+  # g++ 12 warns falsely about std::string's own operator+ (GCC bug 105651).
+  $<$<CXX_COMPILER_ID:GNU>:-Wno-restrict>
   $<$<BOOL:${VOROFORM_WERROR}>:-Werror>)
 if(VOROFORM_SANITIZE)
   target_compile_options(voroform_flags INTERFACE
