@@ -19,14 +19,20 @@ struct CellData {
 
 // cells.vtu: VTK's XML unstructured grid, appended raw data, Float64 points, VTK_POLYHEDRON cells with face streams.
 // Holds the cell arrays given, the site of each cell as "site" (3 components) if the complex has sites, and in the
-// field data what readCellsVtu needs to return the same complex bit for bit: local vertices' origin, each face's two
-// cells and tag. Points are written in world coordinates.
+// field data what readCellsVtu needs to return the same complex bit for bit: the origin, the faces, their two cells and
+// tags. Points are written in world coordinates; where the origin is not zero, the local ones stand beside them as
+// "local" and "site_local". The same bytes every time. Throws UsageError if an array has not one value a cell.
 void writeCellsVtu(const std::filesystem::path& path, const PolyhedralComplex& complex, std::span<const CellData> data);
 
-// Reads what writeCellsVtu wrote. Throws InputError on anything else.
+// Reads what writeCellsVtu wrote: the field data, against which the polyhedra and world coordinates are checked. Throws
+// InputError, with the file and what was found, on anything else; allocates nothing for a declared size before the
+// bytes are known to be there.
 PolyhedralComplex readCellsVtu(const std::filesystem::path& path);
 
-// Surfaces: binary little-endian PLY with Float64 coordinates, OBJ and OFF with 17 digits, binary STL (float32).
+// Surfaces. PLY is binary, little-endian, with Float64 coordinates and, for each triangle, the cell behind it as "cell"
+// (int) and its FaceTag as "tag" (uchar). OBJ and OFF have as many digits as it takes to read the same doubles back
+// (at most 17). Warning: STL holds float32, so coordinates are rounded to about 7 digits; far from the origin that
+// flattens a surface.
 void writeSurfacePly(const std::filesystem::path& path, const BoundarySurface& surface, const PolyhedralComplex& complex);
 void writeSurfaceObj(const std::filesystem::path& path, const TriangleMesh& mesh);
 void writeSurfaceOff(const std::filesystem::path& path, const TriangleMesh& mesh);
