@@ -1,0 +1,94 @@
+#include "voroform/cvt/tessellate.hpp"
+
+#include <string>
+
+#include <unistd.h>
+
+#include "optimize.hpp"
+#include "voroform/core/error.hpp"
+#include "voroform/cvt/energy.hpp"
+#include "voroform/cvt/sites.hpp"
+#include "voroform/voronoi/diagram.hpp"
+
+namespace voroform::cvt {
+
+namespace {
+
+// Measured peak of a run with cvt3 caps, a site; the certificate and the writers included.
+constexpr std::uint64_t kBytesPerSite = 4000;
+constexpr Index kMostSites = 50'000'000;
+
+std::uint64_t availableMemory() {
+  const long pages = ::sysconf(_SC_PHYS_PAGES);
+  const long size = ::sysconf(_SC_PAGESIZE);
+  return pages > 0 && size > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size) : 0;
+}
+
+void requireMemory(const TessellateOptions& options) {
+  const std::uint64_t limit = options.memoryLimit != 0 ? options.memoryLimit : availableMemory();
+  const std::uint64_t needed = estimatedMemory(options.sites);
+  if (limit != 0 && needed > limit) {
+    throw EnvironmentError(std::to_string(options.sites) + " sites need about " + std::to_string(needed >> 20U) +
+                           " MiB of memory, " + std::to_string(limit >> 20U) + " MiB are there: use fewer sites");
+  }
+}
+
+}  // namespace
+
+const char* toString(StopReason reason) {
+  switch (reason) {
+    case StopReason::iterations: return "iterations";
+    case StopReason::converged: return "converged";
+    case StopReason::relativeError: return "relative-error";
+    case StopReason::stalled: return "stalled";
+  }
+  return "";
+}
+
+std::vector<std::string> validate(const TessellateOptions& options) {
+  std::vector<std::string> violations;
+  const auto require = [&](bool holds, const std::string& sentence) {
+    if (!holds) violations.push_back(sentence);
+  };
+  require(options.sites >= 1 && options.sites <= kMostSites,
+          "sites is " + std::to_string(options.sites) + ", but must be from 1 to " + std::to_string(kMostSites));
+  require(options.iterations >= 0, "iterations is " + std::to_string(options.iterations) + ", but must be at least 0");
+  require(options.convergence >= 0, "convergence is " + std::to_string(options.convergence) + ", but must be at least 0");
+  require(options.relativeError >= 0,
+          "relative-error is " + std::to_string(options.relativeError) + ", but must be at least 0");
+  require(options.reseedRounds >= 0,
+          "reseedRounds is " + std::to_string(options.reseedRounds) + ", but must be at least 0");
+  return violations;
+}
+
+std::uint64_t estimatedMemory(Index sites) { return kBytesPerSite * static_cast<std::uint64_t>(sites); }
+
+TessellateResult tessellate(const implicit::ImplicitFunction& f, const Frame& frame, const TessellateOptions& options,
+                            const RunContext& context) {
+  if (const auto violations = validate(options); !violations.empty()) throw UsageError(violations.front());
+  requireMemory(options);
+
+  TessellateResult result;
+  Stopwatch watch;
+  std::vector<Vec3> sites = randomSites(f, options.sites, options.seed, context);
+  result.summary.secondsInitial = watch.seconds();
+
+  watch.restart();
+  optimizeSites(sites, f, options, result.summary, context);
+  result.summary.secondsOptimization = watch.seconds();
+
+  watch.restart();
+  voronoi::ClipOptions clipOptions;
+  clipOptions.cap = options.cap;
+  clipOptions.rootFinder = options.rootFinder;
+  const voronoi::Diagram diagram = voronoi::buildDiagram(sites, siteDomain(f), context);
+  voronoi::ClippedDiagram clipped = voronoi::clip(diagram, f, clipOptions, context);
+  result.complex = voronoi::toComplex(diagram, clipped, f, frame, clipOptions, context);
+  result.summary.clip = clipped.summary;
+  result.summary.emptySites = options.sites - result.complex.cellCount;
+  result.summary.secondsClipping = watch.seconds();
+  context.report("clip", 1);
+  return result;
+}
+
+}  // namespace voroform::cvt

@@ -40,8 +40,80 @@ struct ClipSummary {
   Index chordPoints = 0;         // extra points tried on chords (cvt3)
   Index unprojectedPoints = 0;   // of both, those left where they were
   Index fallbackCaps = 0;        // caps made in another way than asked for
+  Index crossingCells = 0;       // cells whose caps cross in spite of every fallback: the certificate will say so
   std::int64_t evaluations = 0;  // of f at single points, root finding and probes included
   double oracleShare = 0;        // share of the diagram's vertices whose sign the oracle decided
 };
+
+// One piece of the surface within a facet: it links the root where the facet's border leaves the solid to the one where
+// it enters again. The facet's polygon runs from `leave` to `enter`, as seen from the facet's second site.
+struct Chord {
+  Index leave = kNone;
+  Index enter = kNone;
+  Index facet = kNone;
+  Index point = kNone;  // the extra point between the two (cvt3), or kNone
+};
+
+// A diagram clipped by f. Points carry one numbering: the diagram's vertices first, then `points` in their order (roots,
+// then chord points). Facets have two owners, so what is decided for a facet is the same for both cells.
+struct ClippedDiagram {
+  std::vector<std::uint8_t> inside;  // of each diagram vertex: 1 where f < 0
+  std::vector<Vec3> points;
+  Index rootCount = 0;
+  std::vector<std::array<Index, 3>> rootSites;  // the three sites of each root's edge, ascending
+
+  // What the solid keeps of each facet.
+  enum class FacetState : std::uint8_t { outside, whole, cut };
+  std::vector<FacetState> facetStates;
+  // The polygons that cut facets keep, in compressed rows, by ascending facet; counter-clockwise like the facet's loop.
+  std::vector<Index> polygonFacets;
+  std::vector<std::uint32_t> polygonOffsets;
+  std::vector<Index> polygonPoints;
+
+  std::vector<Chord> chords;
+
+  // Closed loops of chords, by ascending site, each counter-clockwise seen from outside the solid; a loop of two
+  // coincident chords is left out. Rows: sites with loops → loops → points.
+  std::vector<Index> loopSites;
+  std::vector<std::uint32_t> loopOffsets;
+  std::vector<Index> loopPoints;
+
+  ClipSummary summary;
+
+  Index loopCount() const { return static_cast<Index>(loopSites.size()); }
+  std::span<const Index> loop(Index l) const {
+    const auto i = static_cast<std::size_t>(l);
+    return {loopPoints.data() + loopOffsets[i], loopOffsets[i + 1] - loopOffsets[i]};
+  }
+  Index polygonCount() const { return static_cast<Index>(polygonFacets.size()); }
+  std::span<const Index> polygon(Index p) const {
+    const auto i = static_cast<std::size_t>(p);
+    return {polygonPoints.data() + polygonOffsets[i], polygonOffsets[i + 1] - polygonOffsets[i]};
+  }
+  const Vec3& position(const Diagram& diagram, Index point) const {
+    const Index vertices = diagram.vertexCount();
+    return point < vertices ? diagram.vertices[static_cast<std::size_t>(point)]
+                            : points[static_cast<std::size_t>(point - vertices)];
+  }
+};
+
+// Clips the diagram: signs, roots, facet polygons, chords (with their points for cvt3) and loops. The caps themselves
+// are made by toComplex; siteMoments closes the loops by flat caps.
+ClippedDiagram clip(const Diagram& diagram, const implicit::ImplicitFunction& f, const ClipOptions& options,
+                    const RunContext& context);
+
+// The complex of the clipped cells, caps of the kind asked for; cell i belongs to cellSites[i], in the sites' order.
+// Sites without a cell have none; their number is the difference of sites and cells. Completes `clipped.summary`.
+mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clipped, const implicit::ImplicitFunction& f,
+                                  const Frame& frame, const ClipOptions& options, const RunContext& context);
+
+// Mass, first and second moment of each clipped cell about its site, loops closed by flat caps: all that the energy and
+// its gradient need.
+struct SiteMoments {
+  double mass = 0;                   // ∫ dx
+  Vec3 first = Vec3::Zero();         // ∫ (x − site) dx
+  double second = 0;                 // ∫ ‖x − site‖² dx
+};
+std::vector<SiteMoments> siteMoments(const Diagram& diagram, const ClippedDiagram& clipped, const RunContext& context);
 
 }  // namespace voroform::voronoi

@@ -1,0 +1,260 @@
+#include "caps.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "projection.hpp"
+#include "voroform/core/parallel.hpp"
+
+namespace voroform::voronoi {
+
+namespace {
+
+constexpr std::size_t kGrain = 64;
+// Reach of a cap point's projection, in units of the loop's radius.
+constexpr double kReach = 2;
+// First step of the search for S, in units of the loop's radius.
+constexpr double kFirstStep = 0.1;
+// Cap points keep this share of the way to the cell's border clear, so that they stay inside the cell: a fan over a loop
+// on the border of a convex cell about a point inside it cannot cross itself.
+constexpr double kBorderShare = 1e-3;
+// Where caps of one cell cross, their points are tried at these heights over the loops' centroids, in units of radius.
+constexpr double kOtherHeights[] = {0.0, 0.1, -0.1, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75};
+
+using Triangle = std::array<Index, 3>;
+
+// Size and attitude of a loop.
+struct LoopFrame {
+  Vec3 centroid;
+  Vec3 normal;  // unit, out of the solid; zero if the loop encloses no area
+  double radius;
+};
+
+// A cap in the making: its apex, if it is a fan, and its triangles; the apex is numbered kNone.
+struct Cap {
+  std::optional<Vec3> apex;
+  std::vector<Triangle> triangles;
+};
+
+struct CapChunk {
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> counts;
+  std::vector<Triangle> triangles;  // the chunk's own points numbered −1, −2, …
+  ClipSummary summary;
+};
+
+class CellCapper {
+ public:
+  CellCapper(const Diagram& diagram, const ClippedDiagram& clipped, const implicit::ImplicitFunction& f,
+             const ClipOptions& options, CapChunk& chunk)
+      : diagram_(diagram), clipped_(clipped), f_(f), options_(options), chunk_(chunk) {}
+
+  // Caps the loops [first, last) of one cell.
+  void cap(Index first, Index last) {
+    site_ = clipped_.loopSites[static_cast<std::size_t>(first)];
+    caps_.clear();
+    for (Index l = first; l < last; ++l) caps_.push_back(makeCap(clipped_.loop(l), last - first == 1));
+    if (caps_.size() > 1 && cross()) separate(first, last);
+    for (const Cap& cap : caps_) emit(cap);
+  }
+
+ private:
+  const Vec3& position(Index point) const { return clipped_.position(diagram_, point); }
+
+  LoopFrame frameOf(std::span<const Index> loop) const {
+    LoopFrame frame{Vec3::Zero(), Vec3::Zero(), 0};
+    for (const Index point : loop) frame.centroid += position(point);
+    frame.centroid /= static_cast<double>(loop.size());
+    Vec3 previous = position(loop.back()) - frame.centroid;
+    for (const Index point : loop) {
+      const Vec3 current = position(point) - frame.centroid;
+      frame.normal += previous.cross(current);
+      frame.radius = std::max(frame.radius, current.norm());
+      previous = current;
+    }
+    const double area = frame.normal.norm();
+    frame.normal = area > 0 ? Vec3(frame.normal / area) : Vec3(Vec3::Zero());
+    return frame;
+  }
+
+  // How far a ray from p in direction d stays within the convex cell.
+  double reachInCell(const Vec3& p, const Vec3& d) const {
+    const Vec3& own = diagram_.sites[static_cast<std::size_t>(site_)];
+    double reach = std::numeric_limits<double>::infinity();
+    for (const Index facet : diagram_.facetsOf(site_)) {
+      const auto& [a, b] = diagram_.facetSites[static_cast<std::size_t>(facet)];
+      const Vec3& other = diagram_.sites[static_cast<std::size_t>(a == site_ ? b : a)];
+      const Vec3 across = other - own;
+      const double approach = across.dot(d);
+      if (approach > 0) reach = std::min(reach, std::max(0.0, across.dot(0.5 * (own + other) - p) / approach));
+    }
+    return reach;
+  }
+
+  static Cap fan(std::span<const Index> loop, const Vec3& apex) {
+    Cap cap;
+    cap.apex = apex;
+    for (std::size_t k = 0; k < loop.size(); ++k) cap.triangles.push_back({loop[k], loop[(k + 1) % loop.size()], kNone});
+    return cap;
+  }
+
+  Cap makeCap(std::span<const Index> loop, bool onlyLoop) {
+    if (options_.cap == CapKind::cvt1) {
+      if (std::optional<Cap> hull = onlyLoop ? hullOf(loop) : std::nullopt) return *std::move(hull);
+      ++chunk_.summary.fallbackCaps;
+      return fan(loop, frameOf(loop).centroid);
+    }
+    const LoopFrame frame = frameOf(loop);
+    if (options_.cap == CapKind::flat) return fan(loop, frame.centroid);
+    return fan(loop, projected(frame));
+  }
+
+  Vec3 projected(const LoopFrame& frame) {
+    ++chunk_.summary.capPoints;
+    Ray ray;
+    ray.origin = frame.centroid;
+    ray.direction = frame.normal;
+    ray.outward = std::min(kReach * frame.radius, (1 - kBorderShare) * reachInCell(frame.centroid, frame.normal));
+    ray.inward = std::min(kReach * frame.radius, (1 - kBorderShare) * reachInCell(frame.centroid, -frame.normal));
+    const std::optional<double> distance =
+        projectOnSurface(f_, ray, kFirstStep * frame.radius, options_.rootTolerance * frame.radius, options_.rootFinder,
+                         chunk_.summary.evaluations);
+    if (!distance) {
+      ++chunk_.summary.unprojectedPoints;
+      return frame.centroid;
+    }
+    return frame.centroid + *distance * frame.normal;
+  }
+
+  std::optional<Cap> hullOf(std::span<const Index> loop) const {
+    std::vector<Vec3> points;
+    std::vector<std::array<Index, 2>> facets;
+    for (const Index point : loop) {
+      points.push_back(position(point));
+      const auto& sites = clipped_.rootSites[static_cast<std::size_t>(point - diagram_.vertexCount())];
+      std::array<Index, 2> others{};
+      std::copy_if(sites.begin(), sites.end(), others.begin(), [&](Index s) { return s != site_; });
+      facets.push_back(others);
+    }
+    std::vector<Vec3> kept;
+    for (const Index facet : diagram_.facetsOf(site_)) {
+      for (const Index v : diagram_.facet(facet)) {
+        if (clipped_.inside[static_cast<std::size_t>(v)] != 0) kept.push_back(diagram_.vertices[static_cast<std::size_t>(v)]);
+      }
+    }
+    const auto triangles = hullCap(points, facets, kept);
+    if (triangles.empty()) return std::nullopt;
+    Cap cap;
+    for (const auto& [a, b, c] : triangles) cap.triangles.push_back({loop[a], loop[b], loop[c]});
+    return cap;
+  }
+
+  std::vector<std::array<Vec3, 3>> corners(const Cap& cap) const {
+    std::vector<std::array<Vec3, 3>> result;
+    for (const Triangle& t : cap.triangles) {
+      result.push_back({position(t[0]), position(t[1]), t[2] == kNone ? *cap.apex : position(t[2])});
+    }
+    return result;
+  }
+
+  bool cross() const {
+    for (std::size_t i = 0; i < caps_.size(); ++i) {
+      for (std::size_t j = i + 1; j < caps_.size(); ++j) {
+        if (trianglesMeet(corners(caps_[i]), corners(caps_[j]))) return true;
+      }
+    }
+    return false;
+  }
+
+  // Caps of one cell cross: tries fans at other heights, cap by cap, until they are apart.
+  void separate(Index first, Index last) {
+    const std::vector<Cap> asked = caps_;
+    std::vector<LoopFrame> frames;
+    for (Index l = first; l < last; ++l) frames.push_back(frameOf(clipped_.loop(l)));
+    const std::size_t heights = std::size(kOtherHeights);
+    const auto fanAt = [&](std::size_t cap, double height) {
+      const LoopFrame& frame = frames[cap];
+      const double reach = (1 - kBorderShare) * reachInCell(frame.centroid, height < 0 ? Vec3(-frame.normal) : frame.normal);
+      const double distance = std::copysign(std::min(std::abs(height) * frame.radius, reach), height);
+      return fan(clipped_.loop(first + static_cast<Index>(cap)), frame.centroid + distance * frame.normal);
+    };
+    // All caps at one height; then, for the usual pair, every combination.
+    for (std::size_t i = 0; i < heights; ++i) {
+      for (std::size_t j = 0; j < (caps_.size() == 2 ? heights : 1); ++j) {
+        for (std::size_t cap = 0; cap < caps_.size(); ++cap) {
+          const std::size_t height = cap == 0 ? i : (i + j) % heights;
+          caps_[cap] = fanAt(cap, kOtherHeights[height]);
+        }
+        if (!cross()) {
+          chunk_.summary.fallbackCaps += static_cast<Index>(caps_.size());
+          return;
+        }
+      }
+    }
+    caps_ = asked;
+    chunk_.summary.crossingCells += 1;
+  }
+
+  void emit(const Cap& cap) {
+    if (cap.apex) chunk_.points.push_back(*cap.apex);
+    const Index apex = -static_cast<Index>(chunk_.points.size());
+    for (Triangle triangle : cap.triangles) {
+      if (triangle[2] == kNone) triangle[2] = apex;
+      chunk_.triangles.push_back(triangle);
+    }
+    chunk_.counts.push_back(static_cast<std::uint32_t>(cap.triangles.size()));
+  }
+
+  const Diagram& diagram_;
+  const ClippedDiagram& clipped_;
+  const implicit::ImplicitFunction& f_;
+  const ClipOptions& options_;
+  CapChunk& chunk_;
+  Index site_ = kNone;
+  std::vector<Cap> caps_;
+};
+
+}  // namespace
+
+Caps buildCaps(const Diagram& diagram, ClippedDiagram& clipped, const implicit::ImplicitFunction& f,
+               const ClipOptions& options, const RunContext& context) {
+  // The first loop of each cell.
+  std::vector<Index> cells;
+  for (Index l = 0; l < clipped.loopCount(); ++l) {
+    const auto i = static_cast<std::size_t>(l);
+    if (l == 0 || clipped.loopSites[i] != clipped.loopSites[i - 1]) cells.push_back(l);
+  }
+  cells.push_back(clipped.loopCount());
+
+  const std::size_t cellCount = cells.size() - 1;
+  std::vector<CapChunk> chunks((cellCount + kGrain - 1) / kGrain);
+  parallelFor(context, cellCount, kGrain, [&](std::size_t begin, std::size_t end) {
+    CellCapper capper(diagram, clipped, f, options, chunks[begin / kGrain]);
+    for (std::size_t c = begin; c < end; ++c) capper.cap(cells[c], cells[c + 1]);
+  });
+
+  Caps caps;
+  const Index firstPoint = diagram.vertexCount() + static_cast<Index>(clipped.points.size());
+  for (const CapChunk& chunk : chunks) {
+    const Index base = firstPoint + static_cast<Index>(caps.points.size());
+    for (Triangle triangle : chunk.triangles) {
+      for (Index& point : triangle) {
+        if (point < 0) point = base - point - 1;
+      }
+      caps.triangles.push_back(triangle);
+    }
+    caps.points.insert(caps.points.end(), chunk.points.begin(), chunk.points.end());
+    caps.triangleOffsets.insert(caps.triangleOffsets.end(), chunk.counts.begin(), chunk.counts.end());
+    clipped.summary.capPoints += chunk.summary.capPoints;
+    clipped.summary.unprojectedPoints += chunk.summary.unprojectedPoints;
+    clipped.summary.fallbackCaps += chunk.summary.fallbackCaps;
+    clipped.summary.crossingCells += chunk.summary.crossingCells;
+    clipped.summary.evaluations += chunk.summary.evaluations;
+  }
+  exclusiveScan(caps.triangleOffsets);
+  return caps;
+}
+
+}  // namespace voroform::voronoi

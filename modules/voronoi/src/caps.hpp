@@ -1,0 +1,32 @@
+// Caps: the triangles that close the loops of a cell's cut.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "voroform/voronoi/clip.hpp"
+
+namespace voroform::voronoi {
+
+// Caps of all loops. A triangle's points are numbered like the clipped diagram's; the caps' own points follow them.
+struct Caps {
+  std::vector<Vec3> points;
+  std::vector<std::uint32_t> triangleOffsets;  // rows: loops → triangles
+  std::vector<std::array<Index, 3>> triangles; // counter-clockwise seen from outside the solid
+};
+
+// Adds to the clipped diagram's summary.
+Caps buildCaps(const Diagram& diagram, ClippedDiagram& clipped, const implicit::ImplicitFunction& f,
+               const ClipOptions& options, const RunContext& context);
+
+// A closed polygon in space as the convex hull's faces over it, by pivoting; empty if it has none: some triangle would
+// lie in a facet, or a point of `kept` above a triangle. facetsOf[k] are the two facets (as neighbor sites) of point k.
+std::vector<std::array<std::size_t, 3>> hullCap(std::span<const Vec3> loop,
+                                                std::span<const std::array<Index, 2>> facetsOf,
+                                                std::span<const Vec3> kept);
+
+// Whether any triangle of `a` meets any of `b` (exact).
+bool trianglesMeet(std::span<const std::array<Vec3, 3>> a, std::span<const std::array<Vec3, 3>> b);
+
+}  // namespace voroform::voronoi

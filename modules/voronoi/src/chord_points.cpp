@@ -1,0 +1,240 @@
+// The extra points of cvt3: each chord is bent to the surface within its facet's plane.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <optional>
+
+#include "facet_clipping.hpp"
+#include "projection.hpp"
+#include "voroform/core/parallel.hpp"
+
+namespace voroform::voronoi {
+
+namespace {
+
+constexpr std::size_t kGrain = 256;
+// First step of the search for S, in units of the chord's length: what the sagitta of a resolved surface takes.
+constexpr double kFirstStep = 0.05;
+// The search goes no farther than this, in units of the chord's half length (twice the loop's radius is the rule for
+// caps; a chord is a loop's piece).
+constexpr double kReach = 2;
+// Points keep this share of the way to the facet's border clear, so that they stay inside the facet.
+constexpr double kBorderShare = 1e-3;
+
+// A facet's plane as a 2D frame; the loop of its diagram vertices is counter-clockwise in it.
+struct PlaneFrame {
+  Vec3 origin;
+  Vec3 u;
+  Vec3 v;
+  Eigen::Vector2d operator()(const Vec3& p) const { return {u.dot(p - origin), v.dot(p - origin)}; }
+};
+
+double cross2(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// How far a ray from p in direction d stays within the convex facet.
+double reachInFacet(const std::vector<Eigen::Vector2d>& facet, const Eigen::Vector2d& p, const Eigen::Vector2d& d) {
+  double reach = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < facet.size(); ++k) {
+    const Eigen::Vector2d& a = facet[k];
+    const Eigen::Vector2d edge = facet[(k + 1) % facet.size()] - a;
+    const double approach = cross2(d, edge);  // > 0 where the ray nears this edge's line from its left
+    if (approach > 0) reach = std::min(reach, std::max(0.0, cross2(edge, p - a) / approach));
+  }
+  return reach;
+}
+
+bool properlyCross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
+                   const Eigen::Vector2d& d) {
+  const double abc = cross2(b - a, c - a);
+  const double abd = cross2(b - a, d - a);
+  const double cda = cross2(d - c, a - c);
+  const double cdb = cross2(d - c, b - c);
+  return (abc > 0) != (abd > 0) && (cda > 0) != (cdb > 0);
+}
+
+// Whether two edges of the polygons, given as one list of closed rings, cross; edges that share an end do not.
+bool simple(const std::vector<std::vector<Eigen::Vector2d>>& rings) {
+  struct Segment {
+    const Eigen::Vector2d* a;
+    const Eigen::Vector2d* b;
+  };
+  std::vector<Segment> segments;
+  for (const auto& ring : rings) {
+    for (std::size_t k = 0; k < ring.size(); ++k) segments.push_back({&ring[k], &ring[(k + 1) % ring.size()]});
+  }
+  for (std::size_t i = 0; i < segments.size(); ++i) {
+    for (std::size_t j = i + 1; j < segments.size(); ++j) {
+      const Segment& s = segments[i];
+      const Segment& t = segments[j];
+      if (s.a == t.b || s.b == t.a) continue;
+      if (properlyCross(*s.a, *s.b, *t.a, *t.b)) return false;
+    }
+  }
+  return true;
+}
+
+// The chords of one facet and the points found for them.
+class FacetChords {
+ public:
+  FacetChords(const Diagram& diagram, const ClippedDiagram& clipped, Index facet) : diagram_(diagram), clipped_(clipped) {
+    const auto& [a, b] = diagram.facetSites[static_cast<std::size_t>(facet)];
+    const Vec3 normal =
+        (diagram.sites[static_cast<std::size_t>(b)] - diagram.sites[static_cast<std::size_t>(a)]).normalized();
+    frame_.u = normal.unitOrthogonal();
+    frame_.v = normal.cross(frame_.u);
+    frame_.origin = clipped.position(diagram, diagram.facet(facet).front());
+    for (const Index v : diagram.facet(facet)) corners_.push_back(frame_(diagram.vertices[static_cast<std::size_t>(v)]));
+  }
+
+  // Where S meets the facet's plane, along the chord's perpendicular through its middle.
+  std::optional<Vec3> find(const Chord& chord, const implicit::ImplicitFunction& f, const ClipOptions& options,
+                           std::int64_t& evaluations) const {
+    const Vec3& leave = clipped_.position(diagram_, chord.leave);
+    const Vec3& enter = clipped_.position(diagram_, chord.enter);
+    const Vec3 middle = 0.5 * (leave + enter);
+    const double length = (enter - leave).norm();
+    const Eigen::Vector2d along = frame_(enter) - frame_(leave);
+    if (!(along.norm() > 0)) return std::nullopt;
+    // The polygon lies to the left of leave → enter.
+    const Eigen::Vector2d out = Eigen::Vector2d(along.y(), -along.x()).normalized();
+    const double reach = kReach * 0.5 * length;
+    Ray ray;
+    ray.origin = middle;
+    ray.direction = out.x() * frame_.u + out.y() * frame_.v;
+    ray.outward = std::min(reach, (1 - kBorderShare) * reachInFacet(corners_, frame_(middle), out));
+    ray.inward = std::min(reach, (1 - kBorderShare) * reachInFacet(corners_, frame_(middle), -out));
+    const std::optional<double> distance = projectOnSurface(f, ray, kFirstStep * length, options.rootTolerance * length,
+                                                            options.rootFinder, evaluations);
+    if (!distance) return std::nullopt;
+    return middle + *distance * ray.direction;
+  }
+
+  Eigen::Vector2d inPlane(const Vec3& p) const { return frame_(p); }
+
+ private:
+  const Diagram& diagram_;
+  const ClippedDiagram& clipped_;
+  PlaneFrame frame_;
+  std::vector<Eigen::Vector2d> corners_;
+};
+
+// The chords [begin, end) of one facet and its polygons, as ranges.
+struct FacetRange {
+  std::size_t chordBegin;
+  std::size_t chordEnd;
+  std::size_t polygonBegin;
+  std::size_t polygonEnd;
+};
+
+std::vector<FacetRange> facetRanges(const ClippedDiagram& clipped) {
+  std::vector<FacetRange> ranges;
+  std::size_t polygon = 0;
+  for (std::size_t chord = 0; chord < clipped.chords.size();) {
+    const Index facet = clipped.chords[chord].facet;
+    FacetRange range{chord, chord, polygon, polygon};
+    while (range.chordEnd < clipped.chords.size() && clipped.chords[range.chordEnd].facet == facet) ++range.chordEnd;
+    while (range.polygonEnd < clipped.polygonFacets.size() && clipped.polygonFacets[range.polygonEnd] == facet) {
+      ++range.polygonEnd;
+    }
+    ranges.push_back(range);
+    chord = range.chordEnd;
+    polygon = range.polygonEnd;
+  }
+  return ranges;
+}
+
+// Calls visit(point) for the polygon's points, and chordPoint(chord's number) between the ends of each of the facet's
+// chords.
+template <class Visit, class ChordPoint>
+void walkPolygon(const ClippedDiagram& clipped, const FacetRange& range, std::size_t polygonNumber, const Visit& visit,
+                 const ChordPoint& chordPoint) {
+  const auto polygon = clipped.polygon(static_cast<Index>(polygonNumber));
+  for (std::size_t k = 0; k < polygon.size(); ++k) {
+    visit(polygon[k]);
+    const Index next = polygon[(k + 1) % polygon.size()];
+    for (std::size_t c = range.chordBegin; c < range.chordEnd; ++c) {
+      if (clipped.chords[c].leave == polygon[k] && clipped.chords[c].enter == next) chordPoint(c);
+    }
+  }
+}
+
+struct Counts {
+  Index tried = 0;
+  Index failed = 0;
+  std::int64_t evaluations = 0;
+};
+
+// Finds the points of one facet's chords. Its polygons must stay simple and apart; else its chords stay straight.
+void bendFacet(const Diagram& diagram, const ClippedDiagram& clipped, const FacetRange& range,
+               const implicit::ImplicitFunction& f, const ClipOptions& options, std::vector<std::optional<Vec3>>& found,
+               Counts& counts) {
+  const FacetChords facet(diagram, clipped, clipped.chords[range.chordBegin].facet);
+  std::vector<std::vector<Eigen::Vector2d>> rings;
+  Index points = 0;
+  for (std::size_t p = range.polygonBegin; p < range.polygonEnd; ++p) {
+    auto& ring = rings.emplace_back();
+    walkPolygon(
+        clipped, range, p,
+        [&](Index point) { ring.push_back(facet.inPlane(clipped.position(diagram, point))); },
+        [&](std::size_t c) {
+          ++counts.tried;
+          found[c] = facet.find(clipped.chords[c], f, options, counts.evaluations);
+          if (found[c]) {
+            ring.push_back(facet.inPlane(*found[c]));
+            ++points;
+          } else {
+            ++counts.failed;
+          }
+        });
+  }
+  if (points == 0 || simple(rings)) return;
+  for (std::size_t c = range.chordBegin; c < range.chordEnd; ++c) found[c].reset();
+  counts.failed += points;
+}
+
+}  // namespace
+
+void addChordPoints(const Diagram& diagram, const implicit::ImplicitFunction& f, const ClipOptions& options,
+                    ClippedDiagram& clipped, const RunContext& context) {
+  const std::vector<FacetRange> ranges = facetRanges(clipped);
+  std::vector<std::optional<Vec3>> found(clipped.chords.size());
+  const Counts counts = parallelReduce(
+      context, ranges.size(), kGrain, Counts{},
+      [&](std::size_t begin, std::size_t end, Counts count) {
+        for (std::size_t r = begin; r < end; ++r) bendFacet(diagram, clipped, ranges[r], f, options, found, count);
+        return count;
+      },
+      [](const Counts& a, const Counts& b) {
+        return Counts{a.tried + b.tried, a.failed + b.failed, a.evaluations + b.evaluations};
+      });
+  clipped.summary.chordPoints = counts.tried;
+  clipped.summary.unprojectedPoints += counts.failed;
+  clipped.summary.evaluations += counts.evaluations;
+
+  for (std::size_t c = 0; c < clipped.chords.size(); ++c) {
+    if (!found[c]) continue;
+    clipped.chords[c].point = diagram.vertexCount() + static_cast<Index>(clipped.points.size());
+    clipped.points.push_back(*found[c]);
+  }
+
+  std::vector<std::uint32_t> sizes;
+  std::vector<Index> points;
+  sizes.reserve(clipped.polygonFacets.size() + 1);
+  points.reserve(clipped.polygonPoints.size() + clipped.chords.size());
+  for (const FacetRange& range : ranges) {
+    for (std::size_t p = range.polygonBegin; p < range.polygonEnd; ++p) {
+      const std::size_t before = points.size();
+      walkPolygon(
+          clipped, range, p, [&](Index point) { points.push_back(point); },
+          [&](std::size_t c) {
+            if (clipped.chords[c].point != kNone) points.push_back(clipped.chords[c].point);
+          });
+      sizes.push_back(static_cast<std::uint32_t>(points.size() - before));
+    }
+  }
+  exclusiveScan(sizes);
+  clipped.polygonOffsets = std::move(sizes);
+  clipped.polygonPoints = std::move(points);
+}
+
+}  // namespace voroform::voronoi
