@@ -1,9 +1,7 @@
 // Poisson surface reconstruction: an implicit form from oriented points (Kazhdan et al. 2006, by way of CGAL).
 #pragma once
 
-#include <filesystem>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,17 +16,18 @@ namespace voroform::implicit {
 class TetrahedralForm;
 
 struct PoissonOptions {
-  // Smallest angle of the refined triangulation's facets etc. follow CGAL's defaults.
-  // Edge of the clearance grid as a share of the longest side of the form's bounds: 1/gridResolution; in [16, 1024].
+  // Voxels of the clearance grid along the longest side of the form's bounds; in [16, 512]. Memory grows with its cube
+  // (three bytes a voxel while building, one after).
   int gridResolution = 192;
 };
+// Every violation, in words; empty if there is none.
 std::vector<std::string> validate(const PoissonOptions& options);
 
 struct PoissonSummary {
-  Index vertices = 0;                // of the refined triangulation
+  Index vertices = 0;  // of the refined triangulation
   Index tetrahedra = 0;
-  bool signTurned = false;           // CGAL turned f's sign: all normals seem flipped
-  double wrongNormalShare = 0;       // share of the points whose n·∇f is negative
+  bool signTurned = false;      // f was turned to be negative inside against the normals: all of them seem flipped
+  double wrongNormalShare = 0;  // share of the points whose n·∇f has the wrong sign, once a turn of all is allowed for
   double seconds = 0;
 };
 

@@ -9,7 +9,7 @@
 namespace voroform::implicit {
 
 enum class RootFinder {
-  itp,        // interpolate–truncate–project (Oliveira & Takahashi 2020): superlinear, at most one step more than bisection
+  itp,  // interpolate–truncate–project (Oliveira & Takahashi 2020): superlinear, at most one step more than bisection
   bisection,  // the thesis's choice (5.2.2.1)
 };
 

@@ -14,9 +14,9 @@ ImplicitPtr sphere(double radius);
 ImplicitPtr torus(double majorRadius, double minorRadius);  // axis z
 ImplicitPtr box(const Vec3& edges);
 ImplicitPtr ellipsoid(const Vec3& semiAxes);
-ImplicitPtr bumpySphere();   // r − 1 − 0.12·sin 6nₓ·sin 6n_y·sin 6n_z, n = p/r
-ImplicitPtr gyroidBall();    // max(|p| − 1, sin 7x cos 7y + sin 7y cos 7z + sin 7z cos 7x)
-ImplicitPtr twoTori();       // two linked tori, R 0.7, r 0.2, centers (∓0.35, 0, 0), axes z and y
+ImplicitPtr bumpySphere();  // r − 1 − 0.12·sin 6nₓ·sin 6n_y·sin 6n_z, n = p/r
+ImplicitPtr gyroidBall();   // max(|p| − 1, sin 7x cos 7y + sin 7y cos 7z + sin 7z cos 7x)
+ImplicitPtr twoTori();      // two linked tori, R 0.7, r 0.2, centers (∓0.35, 0, 0), axes z and y
 
 // The named shapes of the command line: sphere, torus, box, ellipsoid, bumpy-sphere, gyroid-ball, two-tori.
 std::vector<std::string> shapeNames();
