@@ -18,14 +18,15 @@ struct PrepareOptions {
 std::vector<std::string> validate(const PrepareOptions& options);
 
 struct PrepareSummary {
-  std::uint64_t records = 0;         // that went in
-  std::uint64_t nonFinite = 0;       // dropped: NaN or infinite coordinates or normals
-  std::uint64_t zeroNormals = 0;     // dropped: normal of length zero
-  std::uint64_t duplicates = 0;      // dropped: same position as an earlier record
-  bool normalsEstimated = false;     // the input had none: plane fits, oriented along a minimum spanning tree
-  std::uint64_t unoriented = 0;      // dropped: the orientation did not reach them
-  double spacing = 0;                // median distance to the sixth-nearest neighbor / √6·…: see the source
-  std::uint64_t points = 0;          // that came out
+  std::uint64_t records = 0;      // that went in
+  std::uint64_t nonFinite = 0;    // dropped: NaN or infinite coordinates or normals
+  std::uint64_t zeroNormals = 0;  // dropped: normal of length zero
+  std::uint64_t duplicates = 0;   // dropped: same position as an earlier record
+  bool normalsEstimated = false;  // the input had none: plane fits, oriented along a minimum spanning tree
+  std::uint64_t pieces = 0;       // of the neighborhood graph, oriented each for itself; only if estimated
+  std::uint64_t unoriented = 0;   // dropped: the orientation did not reach them
+  double spacing = 0;             // median over the points of the mean distance to their six nearest neighbors
+  std::uint64_t points = 0;       // that came out
 };
 
 struct PrepareResult {
@@ -37,6 +38,7 @@ struct PrepareResult {
 // power of two, so that it loses nothing), drops what cannot be used, normalizes the normals, estimates and orients
 // them where there are none. `name` stands in messages. Throws InputError with the counts found if fewer than 50 usable
 // points remain or all lie in a plane (or on a line, or at one place).
-PrepareResult prepare(PointCloud raw, const std::string& name, const PrepareOptions& options, const RunContext& context);
+PrepareResult prepare(PointCloud raw, const std::string& name, const PrepareOptions& options,
+                      const RunContext& context);
 
 }  // namespace voroform::points

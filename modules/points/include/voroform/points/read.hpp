@@ -1,5 +1,5 @@
 // Reading and writing point clouds. Formats by extension: .ply (ascii, binary both ways), .xyz .xyzn .pwn .txt (text),
-// .pcd (ascii, binary, binary_compressed), .off (vertices). Described in docs/formats.md.
+// .pcd (ascii, binary, binary_compressed), .off (vertices). Described in docs/formats-input.md.
 #pragma once
 
 #include <cstdint>
@@ -14,9 +14,9 @@ namespace voroform::points {
 
 // What a file held before cleaning.
 struct ReadSummary {
-  std::string format;             // e.g. "PLY binary_little_endian"
-  std::uint64_t records = 0;      // points the file holds
-  std::uint64_t faces = 0;        // faces the file declares (a file with faces is a mesh)
+  std::string format;         // e.g. "PLY binary_little_endian"
+  std::uint64_t records = 0;  // points the file holds
+  std::uint64_t faces = 0;    // faces the file declares (a file with faces is a mesh)
   bool normals = false;
 };
 
