@@ -1,0 +1,65 @@
+#include "voroform/metrics/regularity.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace voroform::metrics {
+
+namespace {
+
+constexpr double kHistogramMin = 0.078;
+constexpr double kHistogramMax = 0.128;
+constexpr std::size_t kHistogramBins = 50;
+
+RegularityStatistics statistics(std::vector<double> values) {
+  RegularityStatistics result;
+  result.histogram.assign(kHistogramBins, 0);
+  result.cells = static_cast<Index>(values.size());
+  if (values.empty()) return result;
+  double sum = 0;
+  double squares = 0;
+  for (const double value : values) {
+    sum += value;
+    squares += (value - kOptimalRegularity) * (value - kOptimalRegularity);
+    const double bin = (value - kHistogramMin) / (kHistogramMax - kHistogramMin) * static_cast<double>(kHistogramBins);
+    // The comparison also sends a value that is not a number to the last bin.
+    const std::size_t index =
+        bin < static_cast<double>(kHistogramBins) ? static_cast<std::size_t>(std::max(bin, 0.0)) : kHistogramBins - 1;
+    ++result.histogram[index];
+  }
+  const auto count = static_cast<double>(values.size());
+  result.mean = sum / count;
+  result.rmse = std::sqrt(squares / count);
+  std::sort(values.begin(), values.end(), [](double a, double b) { return a < b || (std::isnan(b) && !std::isnan(a)); });
+  result.max = values.back();
+  const std::size_t middle = values.size() / 2;
+  result.median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+  return result;
+}
+
+}  // namespace
+
+std::vector<double> regularities(std::span<const mesh::CellMoments> moments) {
+  std::vector<double> values;
+  values.reserve(moments.size());
+  for (const mesh::CellMoments& cell : moments) {
+    const double root = std::cbrt(cell.volume);
+    values.push_back(cell.secondMoment / (3 * cell.volume * root * root));
+  }
+  return values;
+}
+
+Regularity regularity(const mesh::PolyhedralComplex& complex, std::span<const double> values) {
+  std::vector<std::uint8_t> onBoundary(static_cast<std::size_t>(complex.cellCount), 0);
+  for (Index f = 0; f < complex.faceCount(); ++f) {
+    if (complex.isBoundary(f)) onBoundary[static_cast<std::size_t>(complex.faceCells[static_cast<std::size_t>(f)][0])] = 1;
+  }
+  std::vector<double> interior;
+  std::vector<double> boundary;
+  for (std::size_t cell = 0; cell < onBoundary.size(); ++cell) {
+    (onBoundary[cell] != 0 ? boundary : interior).push_back(values[cell]);
+  }
+  return {statistics({values.begin(), values.end()}), statistics(std::move(interior)), statistics(std::move(boundary))};
+}
+
+}  // namespace voroform::metrics

@@ -10,7 +10,7 @@
 namespace voroform::metrics {
 
 // G of the best known cell, the truncated octahedron: 19/(192·∛2) (thesis 3.3).
-inline constexpr double kOptimalRegularity = 0.07854328137;
+inline constexpr double kOptimalRegularity = 0.07854328121717653;
 
 // G(P) = (1/3) ∫_P ‖x − x̂‖² dx / |P|^(5/3), x̂ the centroid; one value a cell.
 std::vector<double> regularities(std::span<const mesh::CellMoments> moments);
