@@ -91,15 +91,35 @@ FlatPoisson solve(const points::PointCloud& cloud, const RunContext& context) {
   }
 }
 
-// Share of the measured vertices where n·∇f < 0, with ∇f averaged over the tetrahedra around by volume.
-double shareAgainstNormals(const FlatPoisson& flat) {
-  std::vector<Vec3> gradients(flat.mesh.vertices.size(), Vec3::Zero());
-  for (std::size_t t = 0; t < flat.mesh.tetrahedra.size(); ++t) {
-    const TetrahedronFrame frame(flat.mesh, static_cast<Index>(t));
+// One direction of ∇f for each vertex: the average over the tetrahedra around by volume, then smoothed over the
+// measured neighbors a few times. A fit to random normals follows each point's own normal, but not that of its
+// neighborhood.
+std::vector<Vec3> smoothGradients(const TetrahedralMesh& mesh) {
+  constexpr int kPasses = 3;
+  std::vector<Vec3> gradients(mesh.vertices.size(), Vec3::Zero());
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const TetrahedronFrame frame(mesh, static_cast<Index>(t));
     if (frame.isFlat()) continue;
     const Vec3 weighted = frame.determinant * frame.gradient();
-    for (const Index v : flat.mesh.tetrahedra[t].vertices) gradients[static_cast<std::size_t>(v)] += weighted;
+    for (const Index v : mesh.tetrahedra[t].vertices) gradients[static_cast<std::size_t>(v)] += weighted;
   }
+  for (int pass = 0; pass < kPasses; ++pass) {
+    std::vector<Vec3> smoothed(gradients.size(), Vec3::Zero());
+    for (const FormTetrahedron& tetrahedron : mesh.tetrahedra) {
+      Vec3 sum = Vec3::Zero();
+      for (const Index v : tetrahedron.vertices) {
+        if (mesh.measured[static_cast<std::size_t>(v)] != 0) sum += gradients[static_cast<std::size_t>(v)].normalized();
+      }
+      for (const Index v : tetrahedron.vertices) smoothed[static_cast<std::size_t>(v)] += sum;
+    }
+    gradients = std::move(smoothed);
+  }
+  return gradients;
+}
+
+// Share of the measured vertices where n·∇f < 0.
+double shareAgainstNormals(const FlatPoisson& flat) {
+  const std::vector<Vec3> gradients = smoothGradients(flat.mesh);
   std::size_t against = 0;
   std::size_t measured = 0;
   for (std::size_t v = 0; v < gradients.size(); ++v) {
