@@ -53,8 +53,8 @@ void save(const std::filesystem::path& path, const std::string& bytes) {
 }
 
 std::string plyStart(std::size_t vertices) {
-  return "ply\nformat binary_little_endian 1.0\ncomment written by voroform\nelement vertex " + std::to_string(vertices) +
-         "\nproperty double x\nproperty double y\nproperty double z\n";
+  return "ply\nformat binary_little_endian 1.0\ncomment written by voroform\nelement vertex " +
+         std::to_string(vertices) + "\nproperty double x\nproperty double y\nproperty double z\n";
 }
 
 }  // namespace
@@ -118,7 +118,9 @@ void writeSurfaceStl(const std::filesystem::path& path, const TriangleMesh& mesh
     for (const double x : vector) put(bytes, static_cast<float>(x));
   };
   for (const auto& triangle : mesh.triangles) {
-    const auto corner = [&](std::size_t i) -> const Vec3& { return mesh.vertices[static_cast<std::size_t>(triangle[i])]; };
+    const auto corner = [&](std::size_t i) -> const Vec3& {
+      return mesh.vertices[static_cast<std::size_t>(triangle[i])];
+    };
     putFloats((corner(1) - corner(0)).cross(corner(2) - corner(0)).normalized());
     for (std::size_t i = 0; i < 3; ++i) putFloats(mesh.frame.origin + corner(i));
     put(bytes, std::uint16_t{0});
@@ -136,7 +138,9 @@ void writeSitesPly(const std::filesystem::path& path, std::span<const Vec3> site
 void writeAdjacency(const std::filesystem::path& path, const PolyhedralComplex& complex) {
   const auto areaVector = [&](Index f) {
     const auto loop = complex.face(f);
-    const auto vertex = [&](std::size_t i) -> const Vec3& { return complex.vertices[static_cast<std::size_t>(loop[i])]; };
+    const auto vertex = [&](std::size_t i) -> const Vec3& {
+      return complex.vertices[static_cast<std::size_t>(loop[i])];
+    };
     Vec3 sum = Vec3::Zero();
     for (std::size_t i = 2; i < loop.size(); ++i) sum += (vertex(i - 1) - vertex(0)).cross(vertex(i) - vertex(0));
     return Vec3(0.5 * sum);
@@ -159,7 +163,8 @@ void writeAdjacency(const std::filesystem::path& path, const PolyhedralComplex& 
     Vec3 boundary = Vec3::Zero();
     bool onBoundary = false;
     const auto row = static_cast<std::size_t>(cell);
-    for (auto k = static_cast<std::size_t>(rows.offsets[row]); k < static_cast<std::size_t>(rows.offsets[row + 1]); ++k) {
+    for (auto k = static_cast<std::size_t>(rows.offsets[row]); k < static_cast<std::size_t>(rows.offsets[row + 1]);
+         ++k) {
       const Index f = rows.faces[k];
       const auto [behind, ahead] = complex.faceCells[static_cast<std::size_t>(f)];
       if (ahead == kNone) {

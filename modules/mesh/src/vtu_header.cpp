@@ -118,7 +118,8 @@ Header parseHeader(std::string_view xml, const std::string& file) {
       require(reader, *tag, "type", "UnstructuredGrid");
       require(reader, *tag, "byte_order", "LittleEndian");
       require(reader, *tag, "header_type", "UInt64");
-      if (tag->attributes.contains("compressor")) reader.fail("compressed data; expected plain data as voroform writes");
+      if (tag->attributes.contains("compressor"))
+        reader.fail("compressed data; expected plain data as voroform writes");
       sawFile = true;
     } else if (tag->name == "Piece") {
       if (sawPiece) reader.fail("a second <Piece>; voroform writes one");

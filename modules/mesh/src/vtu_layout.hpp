@@ -38,7 +38,8 @@ void emitConnectivity(const PolyhedralComplex& complex, const CellFaces& rows, c
   std::vector<Index> lastCell(complex.vertices.size(), kNone);
   for (Index cell = 0; cell < complex.cellCount; ++cell) {
     const auto row = static_cast<std::size_t>(cell);
-    for (auto k = static_cast<std::size_t>(rows.offsets[row]); k < static_cast<std::size_t>(rows.offsets[row + 1]); ++k) {
+    for (auto k = static_cast<std::size_t>(rows.offsets[row]); k < static_cast<std::size_t>(rows.offsets[row + 1]);
+         ++k) {
       for (const Index v : complex.face(rows.faces[k])) {
         Index& last = lastCell[static_cast<std::size_t>(v)];
         if (last == cell) continue;
@@ -87,7 +88,8 @@ inline StreamEnds streamEnds(const PolyhedralComplex& complex, const CellFaces& 
   count = 0;
   for (std::size_t row = 0; row < static_cast<std::size_t>(complex.cellCount); ++row) {
     ++count;
-    for (auto k = static_cast<std::size_t>(rows.offsets[row]); k < static_cast<std::size_t>(rows.offsets[row + 1]); ++k) {
+    for (auto k = static_cast<std::size_t>(rows.offsets[row]); k < static_cast<std::size_t>(rows.offsets[row + 1]);
+         ++k) {
       count += 1 + static_cast<std::int64_t>(complex.face(rows.faces[k]).size());
     }
     ends.faces.push_back(count);

@@ -182,7 +182,8 @@ void readFaces(VtuFile& file, PolyhedralComplex& complex) {
     if (complex.faceTags[f] > FaceTag::envelope) fault("unknown tag");
   }
   for (const Index v : complex.faceVertices) {
-    if (v < 0 || v >= points) file.fail("face_vertices names the vertex " + std::to_string(v) + " of " + std::to_string(points));
+    if (v < 0 || v >= points)
+      file.fail("face_vertices names the vertex " + std::to_string(v) + " of " + std::to_string(points));
   }
   for (std::size_t f = 0; f < faces; ++f) {
     if (complex.faceOffsets[f + 1] - complex.faceOffsets[f] < 3) {
@@ -197,7 +198,8 @@ void checkWorld(VtuFile& file, const std::string& name, const std::vector<Vec3>&
   for (std::size_t i = 0; i < local.size(); ++i) {
     const Vec3 expected = frame.origin + local[i];
     if (std::memcmp(expected.data(), world[i].data(), sizeof(Vec3)) != 0) {
-      file.fail("the array '" + name + "', entry " + std::to_string(i) + ": disagrees with origin and local coordinates");
+      file.fail("the array '" + name + "', entry " + std::to_string(i) +
+                ": disagrees with origin and local coordinates");
     }
   }
 }

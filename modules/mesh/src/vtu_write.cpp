@@ -44,11 +44,20 @@ std::string escaped(const std::string& text) {
   std::string result;
   for (const char c : text) {
     switch (c) {
-      case '&': result += "&amp;"; break;
-      case '<': result += "&lt;"; break;
-      case '>': result += "&gt;"; break;
-      case '"': result += "&quot;"; break;
-      default: result += c;
+      case '&':
+        result += "&amp;";
+        break;
+      case '<':
+        result += "&lt;";
+        break;
+      case '>':
+        result += "&gt;";
+        break;
+      case '"':
+        result += "&quot;";
+        break;
+      default:
+        result += c;
     }
   }
   return result;
@@ -74,7 +83,8 @@ class Layout {
   }
 
   template <class T>
-  void vector(const std::string& type, const std::string& name, int components, bool field, const std::vector<T>& values) {
+  void vector(const std::string& type, const std::string& name, int components, bool field,
+              const std::vector<T>& values) {
     const std::uint64_t bytes = values.size() * sizeof(T);
     array(type, name, components, field ? static_cast<std::int64_t>(values.size()) : -1, bytes,
           [&values, bytes](Buffer& buffer) { buffer.write(values.data(), bytes); });
@@ -114,8 +124,8 @@ void checkSizes(const std::filesystem::path& path, const PolyhedralComplex& comp
   const auto cells = static_cast<std::size_t>(complex.cellCount);
   for (const CellData& array : data) {
     if (array.values.size() != cells) {
-      throw UsageError(path.string() + ": the cell data '" + array.name + "' has " + std::to_string(array.values.size()) +
-                       " values for " + std::to_string(cells) + " cells");
+      throw UsageError(path.string() + ": the cell data '" + array.name + "' has " +
+                       std::to_string(array.values.size()) + " values for " + std::to_string(cells) + " cells");
     }
     if (array.name == vtu::kSite || array.name == vtu::kSiteLocal) {
       throw UsageError(path.string() + ": the name '" + array.name + "' is taken by the cells' sites");
@@ -129,7 +139,8 @@ void checkSizes(const std::filesystem::path& path, const PolyhedralComplex& comp
 
 }  // namespace
 
-void writeCellsVtu(const std::filesystem::path& path, const PolyhedralComplex& complex, std::span<const CellData> data) {
+void writeCellsVtu(const std::filesystem::path& path, const PolyhedralComplex& complex,
+                   std::span<const CellData> data) {
   static_assert(sizeof(Vec3) == 3 * sizeof(double) && sizeof(FaceTag) == 1);
   checkSizes(path, complex, data);
   const CellFaces rows = cellFaces(complex);

@@ -33,7 +33,8 @@ PolyhedralComplex readCellsVtu(const std::filesystem::path& path);
 // (int) and its FaceTag as "tag" (uchar). OBJ and OFF have as many digits as it takes to read the same doubles back
 // (at most 17). Warning: STL holds float32, so coordinates are rounded to about 7 digits; far from the origin that
 // flattens a surface.
-void writeSurfacePly(const std::filesystem::path& path, const BoundarySurface& surface, const PolyhedralComplex& complex);
+void writeSurfacePly(const std::filesystem::path& path, const BoundarySurface& surface,
+                     const PolyhedralComplex& complex);
 void writeSurfaceObj(const std::filesystem::path& path, const TriangleMesh& mesh);
 void writeSurfaceOff(const std::filesystem::path& path, const TriangleMesh& mesh);
 void writeSurfaceStl(const std::filesystem::path& path, const TriangleMesh& mesh);
@@ -41,8 +42,8 @@ void writeSurfaceStl(const std::filesystem::path& path, const TriangleMesh& mesh
 // sites.ply: one vertex a cell, in the cells' order.
 void writeSitesPly(const std::filesystem::path& path, std::span<const Vec3> sites, const Frame& frame);
 
-// adjacency.csv: header line, then one row for each interior face i,j,area,nx,ny,nz (unit normal from i to j, i < j) and
-// each cell's boundary i,-1,area,nx,ny,nz with the boundary's area vector summed by cell.
+// adjacency.csv: header line, then one row for each interior face i,j,area,nx,ny,nz (unit normal from i to j, i < j)
+// and each cell's boundary i,-1,area,nx,ny,nz with the boundary's area vector summed by cell.
 void writeAdjacency(const std::filesystem::path& path, const PolyhedralComplex& complex);
 
 }  // namespace voroform::mesh

@@ -22,21 +22,21 @@ struct Certificate {
   bool valid = false;
 
   // Combinatorial: violations counted; all must be 0.
-  Index openCells = 0;             // cells with a directed edge that its opposite does not cancel
-  Index nonManifoldEdges = 0;      // boundary edges without exactly two boundary faces
-  Index nonManifoldVertices = 0;   // boundary vertices whose faces form more than one fan
-  Index inconsistentEdges = 0;     // boundary edges that both faces run through in the same direction
-  Index invalidFaces = 0;          // fewer than three vertices, a vertex twice, indices or cells out of range, behind = ahead
+  Index openCells = 0;            // cells with a directed edge that its opposite does not cancel
+  Index nonManifoldEdges = 0;     // boundary edges without exactly two boundary faces
+  Index nonManifoldVertices = 0;  // boundary vertices whose faces form more than one fan
+  Index inconsistentEdges = 0;    // boundary edges that both faces run through in the same direction
+  Index invalidFaces = 0;  // fewer than three vertices, a vertex twice, indices or cells out of range, behind = ahead
   Index nonFiniteVertices = 0;
-  Index nonPositiveVolumes = 0;    // cells whose volume is not > 0
-  bool outward = false;            // the boundary encloses a positive volume
+  Index nonPositiveVolumes = 0;  // cells whose volume is not > 0
+  bool outward = false;          // the boundary encloses a positive volume
 
   // Geometric.
-  Index selfIntersections = -1;    // pairs of boundary triangles that intersect; -1: not examined
-  Index pointSamples = 0;          // random points located
-  Index pointViolations = 0;       // of them in several cells, or inside the boundary and in no cell, or the reverse
-  double volume = 0;               // enclosed by the boundary
-  double volumeError = 0;          // |Σ cell volumes − enclosed volume| / enclosed volume
+  Index selfIntersections = -1;  // pairs of boundary triangles that intersect; -1: not examined
+  Index pointSamples = 0;        // random points located
+  Index pointViolations = 0;     // of them in several cells, or inside the boundary and in no cell, or the reverse
+  double volume = 0;             // enclosed by the boundary
+  double volumeError = 0;        // |Σ cell volumes − enclosed volume| / enclosed volume
 
   // Topology of the boundary.
   Index components = 0;
