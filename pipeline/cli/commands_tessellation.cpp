@@ -1,0 +1,67 @@
+#include <iostream>
+
+#include "commands.hpp"
+#include "exit_codes.hpp"
+#include "summary.hpp"
+#include "voroform/core/error.hpp"
+
+namespace voroform::cli {
+
+namespace {
+
+constexpr const char* kInvalid =
+    "the tessellation fails its certificate of validity; its files are for examination only; another number of sites "
+    "or --method cvt2 may help";
+
+int makeResults(const pipeline::Form& form, const Settings& settings, const RunContext& context) {
+  const pipeline::WriteOptions options = writeOptions(settings);
+  const pipeline::Tessellation tessellation = pipeline::tessellate(form, options.tessellate, context);
+  const std::vector<std::string> names = pipeline::writeResults(form, tessellation, options, settings.output, context);
+  if (!settings.quiet) {
+    printForm(std::cout, form.record);
+    printTessellation(std::cout, tessellation.summary);
+    printMeasurement(std::cout, tessellation.complex, tessellation.measurement, form.record.points.has_value());
+    printFiles(std::cout, settings.output, names);
+  }
+  if (!tessellation.measurement.certificate.valid) throw MethodError(settings.output + ": " + kInvalid);
+  return kExitDone;
+}
+
+bool isForm(const std::string& input) { return std::filesystem::path(input).extension() == ".vtu"; }
+
+bool isShape(const std::string& input) { return input.starts_with("shape:"); }
+
+}  // namespace
+
+int runReconstruct(const Settings& settings, const CLI::App&, const RunContext& context) {
+  if (isForm(settings.input)) {
+    throw UsageError(settings.input + ": reconstruct starts from points; use tessellate for a form");
+  }
+  pipeline::checkOutputFolder(settings.output);
+  return makeResults(pipeline::formFromInput(settings.input, formOptions(settings), context), settings, context);
+}
+
+int runTessellate(const Settings& settings, const CLI::App& command, const RunContext& context) {
+  if (isForm(settings.input) || isShape(settings.input)) {
+    for (const char* name : {"--envelope", "--margin", "--as"}) {
+      if (command.get_option(name)->count() > 0) {
+        throw UsageError(std::string(name) + ": has no meaning for " + settings.input +
+                         (isShape(settings.input) ? ", which is closed" : "; the envelope is the one in its record"));
+      }
+    }
+  }
+  pipeline::checkOutputFolder(settings.output);
+  return makeResults(pipeline::formFromInput(settings.input, formOptions(settings), context), settings, context);
+}
+
+int runEvaluate(const Settings& settings, const CLI::App&, const RunContext& context) {
+  const pipeline::Evaluation evaluation = pipeline::evaluate(settings.input, context);
+  if (!settings.quiet) {
+    printMeasurement(std::cout, evaluation.complex, evaluation.measurement, evaluation.hasCloud);
+    printFiles(std::cout, settings.input, {"metrics.json"});
+  }
+  if (!evaluation.measurement.certificate.valid) throw MethodError(settings.input + ": " + kInvalid);
+  return kExitDone;
+}
+
+}  // namespace voroform::cli

@@ -1,0 +1,140 @@
+// The command info: what a file is, its size, its validity.
+#include <algorithm>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <set>
+#include <string>
+#include <system_error>
+
+#include <nlohmann/json.hpp>
+
+#include "commands.hpp"
+#include "exit_codes.hpp"
+#include "voroform/core/error.hpp"
+#include "voroform/implicit/form_file.hpp"
+#include "voroform/implicit/tetrahedral_form.hpp"
+#include "voroform/mesh/formats.hpp"
+#include "voroform/mesh/validate.hpp"
+#include "voroform/points/read.hpp"
+
+namespace voroform::cli {
+
+namespace {
+
+namespace fs = std::filesystem;
+using Json = nlohmann::ordered_json;
+
+Json boxJson(const Box3& box, const Frame& frame) {
+  if (box.isEmpty()) return nullptr;
+  const Vec3 low = box.min() + frame.origin;
+  const Vec3 high = box.max() + frame.origin;
+  return {{"min", {low.x(), low.y(), low.z()}}, {"max", {high.x(), high.y(), high.z()}}};
+}
+
+Json describeCells(const mesh::PolyhedralComplex& complex, const Settings& settings, const RunContext& context) {
+  mesh::ValidateOptions options;
+  options.seed = settings.seed;
+  const mesh::Certificate certificate = mesh::validate(complex, options, context);
+  Box3 box;
+  for (const Vec3& vertex : complex.vertices) box.extend(vertex);
+  return {{"kind", "cells"},
+          {"cells", complex.cellCount},
+          {"vertices", complex.vertices.size()},
+          {"faces", complex.faceCount()},
+          {"volume", certificate.volume},
+          {"bounds", boxJson(box, complex.frame)},
+          {"valid", certificate.valid},
+          {"closed_cells", certificate.closedCells()},
+          {"manifold_boundary", certificate.manifoldBoundary()},
+          {"oriented", certificate.oriented()},
+          {"self_intersections", certificate.selfIntersections},
+          {"components", certificate.components},
+          {"euler_characteristic", certificate.eulerCharacteristic},
+          {"problems", certificate.problems}};
+}
+
+Json describeForm(const fs::path& path, const RunContext& context) {
+  Frame frame;
+  const auto form = implicit::readForm(path, context, &frame);
+  return {{"kind", "form"},
+          {"vertices", form->mesh().vertices.size()},
+          {"tetrahedra", form->mesh().tetrahedra.size()},
+          {"bounds_of_the_inside", boxJson(form->bounds(), frame)}};
+}
+
+Json describePoints(const fs::path& path, const RunContext& context) {
+  const points::ReadResult read = points::readPoints(path, context);
+  std::vector<Vec3> finite;
+  std::copy_if(read.cloud.positions.begin(), read.cloud.positions.end(), std::back_inserter(finite),
+               [](const Vec3& p) { return p.allFinite(); });
+  Box3 box;
+  for (const Vec3& p : finite) box.extend(p);
+  const std::size_t finiteCount = finite.size();
+  const auto key = [](const Vec3& p) { return std::array<double, 3>{p.x(), p.y(), p.z()}; };
+  std::sort(finite.begin(), finite.end(), [&key](const Vec3& a, const Vec3& b) { return key(a) < key(b); });
+  const auto distinct = std::unique(finite.begin(), finite.end());
+  return {{"kind", read.summary.faces > 0 ? "mesh" : "points"},
+          {"format", read.summary.format},
+          {"records", read.summary.records},
+          {"faces", read.summary.faces},
+          {"normals", read.summary.normals},
+          {"not_finite", read.cloud.positions.size() - finiteCount},
+          {"duplicates", std::distance(distinct, finite.end())},
+          {"bounds", boxJson(box, read.cloud.frame)}};
+}
+
+// Both kinds of .vtu are ours; the array that only cells have stands in the header.
+bool holdsCells(const fs::path& path) {
+  std::ifstream stream(path, std::ios::binary);
+  std::string head(1 << 16, '\0');
+  stream.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(stream.gcount()));
+  return head.find("face_offsets") != std::string::npos;
+}
+
+void printText(const Json& json) {
+  for (const auto& [name, value] : json.items()) {
+    std::string label = name;
+    std::replace(label.begin(), label.end(), '_', ' ');
+    std::cout << label << ": ";
+    if (value.is_string()) {
+      std::cout << value.get<std::string>();
+    } else if (value.is_boolean()) {
+      std::cout << (value.get<bool>() ? "yes" : "no");
+    } else if (value.is_object() && value.contains("min")) {
+      std::cout << value["min"].dump() << " to " << value["max"].dump();
+    } else {
+      std::cout << value.dump();
+    }
+    std::cout << '\n';
+  }
+}
+
+}  // namespace
+
+int runInfo(const Settings& settings, const CLI::App&, const RunContext& context) {
+  const fs::path path = settings.input;
+  std::error_code error;
+  if (!fs::exists(path, error)) throw InputError(path.string() + ": no such file");
+  if (fs::is_directory(path, error)) throw InputError(path.string() + ": expected a file, found a folder");
+  Json json = {{"file", path.string()}, {"bytes", fs::file_size(path, error)}};
+  Json content;
+  if (path.extension() != ".vtu") {
+    content = describePoints(path, context);
+  } else if (holdsCells(path)) {
+    content = describeCells(mesh::readCellsVtu(path), settings, context);
+  } else {
+    content = describeForm(path, context);
+  }
+  json.update(content);
+  if (settings.json) {
+    std::cout << json.dump(2, ' ', false, Json::error_handler_t::replace) << '\n';
+  } else {
+    printText(json);
+  }
+  return kExitDone;
+}
+
+}  // namespace voroform::cli

@@ -1,0 +1,162 @@
+// The command-line program: parses the options, runs one command and maps what went wrong to an exit code.
+#include <csignal>
+#include <cstdio>
+#include <functional>
+#include <iostream>
+#include <memory>
+#include <new>
+#include <optional>
+#include <vector>
+
+#include "commands.hpp"
+#include "config_file.hpp"
+#include "console.hpp"
+#include "exit_codes.hpp"
+#include "signals.hpp"
+#include "voroform/core/error.hpp"
+
+namespace voroform::cli {
+namespace {
+
+using Run = int (*)(const Settings&, const CLI::App&, const RunContext&);
+
+struct Command {
+  CLI::App* app;
+  Run run;
+};
+
+constexpr const char* kInputHelp = "A point cloud (.ply .xyz .xyzn .pwn .txt .pcd .off)";
+
+CLI::App* addCommand(CLI::App& app, Settings& settings, const std::string& name, const std::string& description,
+                     const std::string& input, const std::string& inputDescription) {
+  CLI::App* command = app.add_subcommand(name, description);
+  command->add_option(input, settings.input, inputDescription)->required();
+  return command;
+}
+
+std::vector<Command> addCommands(CLI::App& app, Settings& settings) {
+  std::vector<Command> commands;
+
+  CLI::App* reconstruct = addCommand(app, settings, "reconstruct", "From points to a measured tessellation", "INPUT",
+                                     std::string(kInputHelp) + ", or shape:NAME");
+  addOutputOption(*reconstruct, settings, "Folder for the results");
+  addFormOptions(*reconstruct, settings);
+  addTessellationOptions(*reconstruct, settings);
+  commands.push_back({reconstruct, runReconstruct});
+
+  CLI::App* points = addCommand(app, settings, "points", "Read, clean and orient a point cloud", "INPUT", kInputHelp);
+  addOutputOption(*points, settings, "The .ply file to write");
+  addInputKindOption(*points, settings);
+  commands.push_back({points, runPoints});
+
+  CLI::App* implicit = addCommand(app, settings, "implicit", "Fit an implicit form to points", "INPUT", kInputHelp);
+  addOutputOption(*implicit, settings, "Folder for form.vtu, form.json and points.ply");
+  addFormOptions(*implicit, settings);
+  commands.push_back({implicit, runImplicit});
+
+  CLI::App* tessellate = addCommand(app, settings, "tessellate", "Cells from a form, points or a shape, measured",
+                                    "INPUT", "A form (.vtu), shape:NAME, or a point cloud as for reconstruct");
+  addOutputOption(*tessellate, settings, "Folder for the results");
+  addFormOptions(*tessellate, settings);
+  addTessellationOptions(*tessellate, settings);
+  commands.push_back({tessellate, runTessellate});
+
+  CLI::App* evaluate = addCommand(app, settings, "evaluate", "Measure a results folder's cells anew", "DIR",
+                                  "Folder that reconstruct or tessellate wrote");
+  commands.push_back({evaluate, runEvaluate});
+
+  CLI::App* info = addCommand(app, settings, "info", "What a file is, its size, its validity", "FILE",
+                              "A point cloud, a form (.vtu) or cells (.vtu)");
+  info->add_flag("--json", settings.json, "Print JSON");
+  commands.push_back({info, runInfo});
+
+  for (const Command& command : commands) addCommonOptions(*command.app, settings);
+  return commands;
+}
+
+// Runs the work and gives its exit code; `report` receives the message of what went wrong.
+int exitCodeOf(const std::function<int()>& work, const std::function<void(const std::string&)>& report) {
+  try {
+    return work();
+  } catch (const UsageError& error) {
+    report(error.what());
+    return kExitUsage;
+  } catch (const InputError& error) {
+    report(error.what());
+    return kExitInput;
+  } catch (const MethodError& error) {
+    report(error.what());
+    return kExitMethod;
+  } catch (const EnvironmentError& error) {
+    report(error.what());
+    return kExitEnvironment;
+  } catch (const Cancelled&) {
+    report("interrupted");
+    return kExitInterrupted;
+  } catch (const std::bad_alloc&) {
+    report("not enough memory");
+    return kExitEnvironment;
+  } catch (const std::exception& error) {
+    report(std::string("unexpected failure: ") + error.what());
+    return kExitMethod;
+  }
+}
+
+int runCommand(const Command& command, Settings& settings, const SignalWatch& signals) {
+  std::optional<Console> console;
+  const auto report = [&console](const std::string& message) {
+    if (console) {
+      console->error(message);
+    } else {
+      std::cerr << "voroform: error: " << message << '\n';
+    }
+  };
+  return exitCodeOf(
+      [&] {
+        if (!settings.configFile.empty()) applyConfigFile(*command.app, settings.configFile);
+        if (command.app->get_option_no_throw("--output") != nullptr && settings.output.empty()) {
+          throw UsageError("--output is required; see voroform " + command.app->get_name() + " --help");
+        }
+        console.emplace(settings);
+        const int code =
+            command.run(settings, *command.app, console->context(signals.cancelled(), effectiveThreads(settings)));
+        std::cout.flush();
+        if (!std::cout) throw EnvironmentError("cannot write to the standard output");
+        return code;
+      },
+      report);
+}
+
+int run(int argc, char** argv) {
+  // A write beyond the file size limit shall fail like one to a full disk.
+  std::signal(SIGXFSZ, SIG_IGN);
+  const SignalWatch signals;
+
+  Settings settings;
+  CLI::App app("Turns oriented point clouds into clipped centroidal Voronoi tessellations", "voroform");
+  app.set_version_flag("--version", std::string("voroform ") + VOROFORM_VERSION);
+  app.require_subcommand(1);
+  app.failure_message(CLI::FailureMessage::simple);
+  const std::vector<Command> commands = addCommands(app, settings);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+  }
+  for (const Command& command : commands) {
+    if (command.app->parsed()) return runCommand(command, settings, signals);
+  }
+  return kExitUsage;
+}
+
+}  // namespace
+}  // namespace voroform::cli
+
+int main(int argc, char** argv) {
+  try {
+    return voroform::cli::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::fprintf(stderr, "voroform: error: %s\n", error.what());
+    return voroform::cli::kExitEnvironment;
+  }
+}

@@ -1,0 +1,189 @@
+#include "options.hpp"
+
+#include <limits>
+#include <set>
+#include <sstream>
+#include <thread>
+#include <vector>
+
+#include "voroform/core/error.hpp"
+
+namespace voroform::cli {
+
+namespace {
+
+// Accepts numbers in [low, high]; the message names the value and the range.
+template <class T>
+CLI::Validator inRange(T low, T high) {
+  std::ostringstream range;
+  range << '[' << low << ", " << high << ']';
+  CLI::Validator validator;
+  validator.name("range")
+      .description("in " + range.str())
+      .operation([low, high, text = range.str()](std::string& input) {
+        T value{};
+        if (CLI::detail::lexical_cast(input, value) && value >= low && value <= high) return std::string();
+        return input + " is not in " + text;
+      });
+  return validator;
+}
+
+CLI::Validator oneOf(const std::vector<std::string>& names) {
+  std::string list;
+  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
+  CLI::Validator validator;
+  validator.name("choice").description("one of " + list).operation([names, list](std::string& input) {
+    for (const std::string& name : names) {
+      if (input == name) return std::string();
+    }
+    return "unknown value " + input + "; expected one of " + list;
+  });
+  return validator;
+}
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  std::stringstream stream(list);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  return parts;
+}
+
+constexpr pipeline::ExtraFormat kFormats[] = {pipeline::ExtraFormat::obj, pipeline::ExtraFormat::off,
+                                              pipeline::ExtraFormat::stl, pipeline::ExtraFormat::adjacency};
+
+CLI::Validator formatList() {
+  std::string all;
+  for (const auto format : kFormats) all += (all.empty() ? "" : ",") + std::string(pipeline::toString(format));
+  CLI::Validator validator;
+  validator.name("formats").description("of " + all).operation([all](std::string& input) {
+    for (const std::string& part : split(input)) {
+      bool known = false;
+      for (const auto format : kFormats) known = known || part == pipeline::toString(format);
+      if (!known) return "unknown format " + part + "; expected some of " + all;
+    }
+    return std::string();
+  });
+  return validator;
+}
+
+}  // namespace
+
+void addCommonOptions(CLI::App& command, Settings& settings) {
+  command.add_option("--threads", settings.threads, "Threads to use; 0: as many as the machine has")
+      ->check(inRange(0, 1024))
+      ->capture_default_str()
+      ->group("Common options");
+  command.add_option("--seed", settings.seed, "Seed of all random numbers")
+      ->capture_default_str()
+      ->group("Common options");
+  command.add_flag("--quiet", settings.quiet, "Print warnings and errors only")->group("Common options");
+  command.add_flag("--verbose", settings.verbose, "Print details")->group("Common options");
+  command.add_option("--log", settings.logFile, "Write all messages to this file as well")
+      ->type_name("FILE")
+      ->group("Common options");
+  command
+      .add_option("--config", settings.configFile,
+                  "Read options from this TOML file, by their long names; the command line comes first")
+      ->type_name("FILE")
+      ->group("Common options");
+}
+
+void addOutputOption(CLI::App& command, Settings& settings, const std::string& description) {
+  // Not required() for CLI11: it may stand in the configuration file, which is read after the command line.
+  command.add_option("-o,--output", settings.output, description)->type_name("PATH");
+}
+
+void addInputKindOption(CLI::App& command, Settings& settings) {
+  command
+      .add_option("--as", settings.as,
+                  "How to read the input: a file with faces is a mesh, one without a cloud; points takes a mesh's "
+                  "vertices as a cloud")
+      ->check(oneOf({"auto", "points", "mesh"}))
+      ->capture_default_str();
+}
+
+void addFormOptions(CLI::App& command, Settings& settings) {
+  addInputKindOption(command, settings);
+  command
+      .add_option("--envelope", settings.envelope,
+                  "What closes an open scan: box is the cloud's bounding box grown by the margin")
+      ->check(oneOf({"box", "none"}))
+      ->capture_default_str();
+  command.add_option("--margin", settings.margin, "Growth of the envelope, as a share of the bounding box's diagonal")
+      ->check(inRange(0.0, 1.0))
+      ->capture_default_str();
+}
+
+void addTessellationOptions(CLI::App& command, Settings& settings) {
+  command
+      .add_option("--method", settings.method,
+                  "Caps of the boundary cells: cvt1 convex hulls, cvt2 a point on the surface for each cap, cvt3 also "
+                  "one for each chord")
+      ->check(oneOf({"cvt1", "cvt2", "cvt3"}))
+      ->capture_default_str();
+  command.add_option("--sites", settings.sites, "Number of sites, and so of cells")
+      ->check(inRange(Index{1}, std::numeric_limits<Index>::max()))
+      ->capture_default_str();
+  command.add_option("--iterations", settings.iterations, "Iterations of the optimizer; 0 clips the initial sites")
+      ->check(inRange(0, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--optimizer", settings.optimizer, "How the sites are moved")
+      ->check(oneOf({"lbfgs", "lloyd"}))
+      ->capture_default_str();
+  command.add_option("--root-finder", settings.rootFinder, "How the surface is found on an edge")
+      ->check(oneOf({"itp", "bisection"}))
+      ->capture_default_str();
+  command
+      .add_option("--relative-error", settings.relativeError,
+                  "Stop when the energy is within this share of its optimum; 0: never")
+      ->check(inRange(0.0, 1e9))
+      ->capture_default_str();
+  command.add_option("--formats", settings.formats, "Further files to write, separated by commas")
+      ->type_name("LIST")
+      ->check(formatList())
+      ->capture_default_str();
+  command
+      .add_option("--memory-limit", settings.memoryLimit,
+                  "Most memory to take, e.g. 4GB; 0: what the machine has available")
+      ->type_name("SIZE")
+      ->transform(CLI::AsSizeValue(false))
+      ->capture_default_str();
+}
+
+int effectiveThreads(const Settings& settings) {
+  if (settings.threads > 0) return settings.threads;
+  return static_cast<int>(std::max(1U, std::thread::hardware_concurrency()));
+}
+
+pipeline::FormOptions formOptions(const Settings& settings) {
+  pipeline::FormOptions options;
+  if (settings.as == "points") options.inputKind = pipeline::InputKind::points;
+  if (settings.as == "mesh") options.inputKind = pipeline::InputKind::mesh;
+  options.envelope = settings.envelope == "none" ? pipeline::Envelope::none : pipeline::Envelope::box;
+  options.margin = settings.margin;
+  return options;
+}
+
+pipeline::WriteOptions writeOptions(const Settings& settings) {
+  pipeline::WriteOptions options;
+  for (const std::string& name : split(settings.formats)) {
+    for (const auto format : kFormats) {
+      if (name == pipeline::toString(format)) options.formats.insert(format);
+    }
+  }
+  options.threads = effectiveThreads(settings);
+  cvt::TessellateOptions& cvt = options.tessellate;
+  cvt.sites = settings.sites;
+  cvt.iterations = settings.iterations;
+  cvt.optimizer = settings.optimizer == "lloyd" ? cvt::Optimizer::lloyd : cvt::Optimizer::lbfgs;
+  cvt.cap = settings.method == "cvt1"   ? voronoi::CapKind::cvt1
+            : settings.method == "cvt2" ? voronoi::CapKind::cvt2
+                                        : voronoi::CapKind::cvt3;
+  cvt.rootFinder = settings.rootFinder == "bisection" ? implicit::RootFinder::bisection : implicit::RootFinder::itp;
+  cvt.relativeError = settings.relativeError;
+  cvt.memoryLimit = settings.memoryLimit;
+  cvt.seed = settings.seed;
+  return options;
+}
+
+}  // namespace voroform::cli

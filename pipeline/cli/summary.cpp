@@ -1,0 +1,85 @@
+#include "summary.hpp"
+
+#include <cstdio>
+
+namespace voroform::cli {
+
+namespace {
+
+std::string number(double value) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.4g", value);
+  return text;
+}
+
+std::string percent(double share) { return number(100 * share) + " %"; }
+
+std::string plural(std::uint64_t count, const std::string& thing) {
+  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+}
+
+}  // namespace
+
+void printPoints(std::ostream& out, const points::PrepareSummary& summary) {
+  out << "points: " << summary.points << " of " << plural(summary.records, "record");
+  if (summary.nonFinite > 0) out << ", " << summary.nonFinite << " not finite";
+  if (summary.zeroNormals > 0) out << ", " << summary.zeroNormals << " without a normal's direction";
+  if (summary.duplicates > 0) out << ", " << plural(summary.duplicates, "duplicate");
+  if (summary.unoriented > 0) out << ", " << summary.unoriented << " that could not be oriented";
+  out << "; spacing " << number(summary.spacing) << '\n';
+  out << "normals: "
+      << (summary.normalsEstimated ? "estimated, oriented along a minimum spanning tree" : "as in the file") << '\n';
+}
+
+void printForm(std::ostream& out, const pipeline::FormRecord& record) {
+  if (record.input.kind == "shape") {
+    out << "form: the shape " << record.input.name << '\n';
+    return;
+  }
+  if (record.points) printPoints(out, *record.points);
+  if (record.poisson) {
+    out << "form: Poisson, " << record.poisson->vertices << " vertices, " << record.poisson->tetrahedra
+        << " tetrahedra; " << percent(record.poisson->wrongNormalShare) << " of the normals point against it\n";
+  }
+  out << "envelope: ";
+  if (record.envelopeBox) {
+    out << "the cloud's bounding box grown by " << percent(record.margin) << " of its diagonal\n";
+  } else {
+    out << "none\n";
+  }
+}
+
+void printTessellation(std::ostream& out, const cvt::TessellateSummary& summary) {
+  const std::size_t iterations = summary.iterations.empty() ? 0 : summary.iterations.size() - 1;
+  out << "optimization: " << plural(iterations, "iteration") << ", "
+      << plural(static_cast<std::uint64_t>(summary.evaluations), "evaluation") << ", ended by "
+      << cvt::toString(summary.stop) << "; energy " << percent(summary.relativeError) << " above its optimum\n";
+}
+
+void printMeasurement(std::ostream& out, const mesh::PolyhedralComplex& complex,
+                      const pipeline::Measurement& measurement, bool hasCloud) {
+  const mesh::Certificate& certificate = measurement.certificate;
+  const metrics::Fidelity& fidelity = measurement.fidelity;
+  out << "cells: " << complex.cellCount << ", " << measurement.regularity.boundary.cells
+      << " of them at the boundary\n";
+  out << "valid: " << (certificate.valid ? "yes" : "no") << "; "
+      << plural(static_cast<std::uint64_t>(certificate.components), "component") << ", Euler number "
+      << certificate.eulerCharacteristic << ", " << certificate.selfIntersections << " self-intersections, "
+      << certificate.pointViolations << " of " << certificate.pointSamples << " points in doubt\n";
+  for (const std::string& problem : certificate.problems) out << "  " << problem << '\n';
+  out << "volume: " << number(certificate.volume) << ", " << percent(fidelity.volumeError) << " from the form's; "
+      << percent(fidelity.missedShare) << " of the inside in no cell\n";
+  out << "boundary: " << percent(fidelity.envelopeShare) << " on the envelope";
+  if (hasCloud) out << ", " << percent(fidelity.unsupportedShare) << " farther than four spacings from any point";
+  out << '\n';
+  out << "regularity: mean " << number(measurement.regularity.all.mean) << ", largest "
+      << number(measurement.regularity.all.max) << ", optimum " << number(metrics::kOptimalRegularity) << '\n';
+}
+
+void printFiles(std::ostream& out, const std::filesystem::path& folder, const std::vector<std::string>& names) {
+  out << "wrote " << folder.string() << ":";
+  for (const std::string& name : names) out << ' ' << name;
+  out << '\n';
+}
+
+}  // namespace voroform::cli

@@ -1,0 +1,21 @@
+// The summaries that commands print on the standard output stream.
+#pragma once
+
+#include <filesystem>
+#include <ostream>
+#include <string>
+#include <vector>
+
+#include "voroform/pipeline/form.hpp"
+#include "voroform/pipeline/tessellation.hpp"
+
+namespace voroform::cli {
+
+void printPoints(std::ostream& out, const points::PrepareSummary& summary);
+void printForm(std::ostream& out, const pipeline::FormRecord& record);
+void printTessellation(std::ostream& out, const cvt::TessellateSummary& summary);
+void printMeasurement(std::ostream& out, const mesh::PolyhedralComplex& complex,
+                      const pipeline::Measurement& measurement, bool hasCloud);
+void printFiles(std::ostream& out, const std::filesystem::path& folder, const std::vector<std::string>& names);
+
+}  // namespace voroform::cli

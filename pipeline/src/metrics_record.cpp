@@ -1,0 +1,141 @@
+#include <sys/resource.h>
+
+#include "records.hpp"
+
+namespace voroform::pipeline {
+
+namespace {
+
+Json statisticsJson(const metrics::RegularityStatistics& statistics) {
+  return {{"cells", statistics.cells},   {"max", statistics.max},   {"mean", statistics.mean},
+          {"median", statistics.median}, {"rmse", statistics.rmse}, {"histogram", statistics.histogram}};
+}
+
+Json optionsJson(const FormRecord& form, const WriteOptions& options) {
+  Json formats = Json::array();
+  for (const ExtraFormat format : options.formats) formats.push_back(toString(format));
+  const cvt::TessellateOptions& cvt = options.tessellate;
+  return {{"method", toString(cvt.cap)},
+          {"sites", cvt.sites},
+          {"iterations", cvt.iterations},
+          {"optimizer", toString(cvt.optimizer)},
+          {"root_finder", toString(cvt.rootFinder)},
+          {"relative_error", cvt.relativeError},
+          {"envelope", toString(form.envelope)},
+          {"margin", form.margin},
+          {"formats", std::move(formats)}};
+}
+
+Json energyJson(const cvt::TessellateSummary& summary) {
+  Json steps = Json::array();
+  for (const cvt::IterationRecord& record : summary.iterations) {
+    steps.push_back({{"value", record.energy}, {"rms_move", record.rmsMove}, {"evaluations", record.evaluations}});
+  }
+  // The first record is that of the initial sites.
+  const std::size_t iterations = summary.iterations.empty() ? 0 : summary.iterations.size() - 1;
+  return {{"value", summary.energy},    {"optimal", summary.optimalEnergy},   {"relative_error", summary.relativeError},
+          {"iterations", iterations},   {"evaluations", summary.evaluations}, {"stop", cvt::toString(summary.stop)},
+          {"history", std::move(steps)}};
+}
+
+Json clippingJson(const cvt::TessellateSummary& summary) {
+  const voronoi::ClipSummary& clip = summary.clip;
+  return {{"roots", clip.roots},
+          {"double_root_edges", clip.doubleRootEdges},
+          {"caps", clip.loops},
+          {"cap_points", clip.capPoints},
+          {"chord_points", clip.chordPoints},
+          {"function_evaluations", clip.evaluations},
+          {"oracle_share", clip.oracleShare},
+          {"reseeded_sites", summary.reseededSites}};
+}
+
+}  // namespace
+
+std::uint64_t peakMemoryBytes() {
+  rusage usage{};
+  ::getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+Json countsJson(const mesh::PolyhedralComplex& complex, const Measurement& measurement, Index sites) {
+  std::int64_t triangles = 0;
+  for (Index f = 0; f < complex.faceCount(); ++f) {
+    if (complex.isBoundary(f)) triangles += static_cast<std::int64_t>(complex.face(f).size()) - 2;
+  }
+  return {{"sites", sites},
+          {"cells", complex.cellCount},
+          {"boundary_cells", measurement.regularity.boundary.cells},
+          {"vertices", complex.vertices.size()},
+          {"faces", complex.faceCount()},
+          {"boundary_triangles", triangles}};
+}
+
+Json validityJson(const mesh::Certificate& certificate) {
+  return {{"valid", certificate.valid},
+          {"closed_cells", certificate.closedCells()},
+          {"manifold_boundary", certificate.manifoldBoundary()},
+          {"oriented", certificate.oriented()},
+          {"self_intersections", certificate.selfIntersections},
+          {"point_samples", certificate.pointSamples},
+          {"point_violations", certificate.pointViolations},
+          {"volume", certificate.volume},
+          {"volume_error", certificate.volumeError},
+          {"components", certificate.components},
+          {"euler_characteristic", certificate.eulerCharacteristic},
+          {"problems", certificate.problems}};
+}
+
+void setMeasuredFidelity(Json& fidelity, const metrics::Fidelity& measured, bool hasCloud) {
+  fidelity["volume_error"] = measured.volumeError;
+  fidelity["sampled_volume"] = measured.sampledVolume;
+  fidelity["sampled_volume_sigma"] = measured.sampledVolumeSigma;
+  fidelity["missed_share"] = measured.missedShare;
+  fidelity["disconnected_cells"] = measured.disconnectedCells;
+  fidelity["envelope_share"] = measured.envelopeShare;
+  fidelity["unsupported_share"] = hasCloud ? Json(measured.unsupportedShare) : Json(nullptr);
+}
+
+Json regularityJson(const metrics::Regularity& regularity) {
+  return {{"optimal", metrics::kOptimalRegularity},
+          {"all", statisticsJson(regularity.all)},
+          {"interior", statisticsJson(regularity.interior)},
+          {"boundary", statisticsJson(regularity.boundary)}};
+}
+
+Json metricsJson(const Form& form, const Tessellation& tessellation, const WriteOptions& options) {
+  const cvt::TessellateSummary& summary = tessellation.summary;
+  const Measurement& measurement = tessellation.measurement;
+  Json json = {{"schema", kMetricsSchema},
+               {"input", inputJson(form.record.input)},
+               {"options", optionsJson(form.record, options)},
+               {"versions", versionsJson()},
+               {"seed", options.tessellate.seed},
+               {"threads", options.threads}};
+  const Json formRecordJson = formJson(form.record);
+  for (const char* key : {"points", "implicit"}) {
+    if (formRecordJson.contains(key)) json[key] = formRecordJson[key];
+  }
+  json["counts"] = countsJson(tessellation.complex, measurement, options.tessellate.sites);
+  json["validity"] = validityJson(measurement.certificate);
+  Json fidelity = Json::object();
+  setMeasuredFidelity(fidelity, measurement.fidelity, form.record.points.has_value());
+  fidelity["empty_sites"] = summary.emptySites;
+  fidelity["multi_loop_cells"] = summary.clip.multiLoopCells;
+  fidelity["unprojected_points"] = summary.clip.unprojectedPoints;
+  fidelity["fallback_caps"] = summary.clip.fallbackCaps;
+  json["fidelity"] = std::move(fidelity);
+  json["clipping"] = clippingJson(summary);
+  json["regularity"] = regularityJson(measurement.regularity);
+  json["energy"] = energyJson(summary);
+  json["seconds"] = {{"points", form.secondsPoints},
+                     {"implicit", form.secondsImplicit},
+                     {"tessellation", tessellation.seconds},
+                     {"metrics", measurement.seconds},
+                     {"total", form.secondsPoints + form.secondsImplicit + tessellation.seconds + measurement.seconds}};
+  json["peak_memory_bytes"] = peakMemoryBytes();
+  json["warnings"] = tessellation.warnings;
+  return json;
+}
+
+}  // namespace voroform::pipeline

@@ -1,0 +1,42 @@
+// The records that stand in form.json and metrics.json. Keys keep a fixed order; numbers are written with all digits
+// that they need to be read back as the same bits.
+#pragma once
+
+#include <filesystem>
+#include <string>
+
+#include <nlohmann/json.hpp>
+
+#include "voroform/pipeline/form.hpp"
+#include "voroform/pipeline/tessellation.hpp"
+
+namespace voroform::pipeline {
+
+using Json = nlohmann::ordered_json;
+
+inline constexpr const char* kFormSchema = "voroform.form/1";
+inline constexpr const char* kMetricsSchema = "voroform.metrics/1";
+inline constexpr const char* kMetricsFile = "metrics.json";
+inline constexpr const char* kCellsFile = "cells.vtu";
+
+Json versionsJson();
+Json inputJson(const InputRecord& input);
+
+// form.json.
+Json formJson(const FormRecord& record);
+// `name` stands in messages. Throws InputError naming the key that lacks or has a wrong type.
+FormRecord formRecord(const Json& json, const std::string& name);
+
+// Parts of metrics.json that evaluate() replaces, and those that it keeps.
+Json countsJson(const mesh::PolyhedralComplex& complex, const Measurement& measurement, Index sites);
+Json validityJson(const mesh::Certificate& certificate);
+// The part of fidelity that is measured on the complex; the rest is what only the making run knew.
+void setMeasuredFidelity(Json& fidelity, const metrics::Fidelity& measured, bool hasCloud);
+Json regularityJson(const metrics::Regularity& regularity);
+Json metricsJson(const Form& form, const Tessellation& tessellation, const WriteOptions& options);
+std::uint64_t peakMemoryBytes();
+
+Json readJson(const std::filesystem::path& path);  // throws InputError
+void writeJson(const std::filesystem::path& path, const Json& json);
+
+}  // namespace voroform::pipeline

@@ -1,0 +1,14 @@
+#pragma once
+
+#include <filesystem>
+#include <string>
+#include <vector>
+
+#include "records.hpp"
+
+namespace voroform::pipeline {
+
+// SHA-256 of each of the files, by name.
+Json filesJson(const std::filesystem::path& folder, const std::vector<std::string>& names);
+
+}  // namespace voroform::pipeline

@@ -1,0 +1,146 @@
+#include "voroform/pipeline/tessellation.hpp"
+
+#include <cmath>
+#include <cstdio>
+
+#include "voroform/core/error.hpp"
+#include "warnings.hpp"
+
+namespace voroform::pipeline {
+
+namespace {
+
+// Above these, what was lost is worth a warning.
+constexpr double kVolumeErrorWarning = 0.02;
+constexpr double kMissedShareWarning = 0.01;
+constexpr double kFallbackShareWarning = 0.01;
+constexpr double kMultiLoopShareWarning = 0.01;
+
+std::string percent(double share) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.2g %%", 100 * share);
+  return text;
+}
+
+double share(Index part, Index whole) { return whole > 0 ? static_cast<double>(part) / whole : 0; }
+
+void warnOfClipping(const cvt::TessellateSummary& summary, const RunContext& context) {
+  const voronoi::ClipSummary& clip = summary.clip;
+  if (summary.emptySites > 0) {
+    context.warn(std::to_string(summary.emptySites) +
+                 " sites ended without a cell and were dropped: some parts of "
+                 "the solid are thinner than the cell size; more sites help");
+  }
+  if (share(clip.multiLoopCells, clip.boundaryCells) > kMultiLoopShareWarning) {
+    context.warn(std::to_string(clip.multiLoopCells) + " of " + std::to_string(clip.boundaryCells) +
+                 " boundary cells are cut by the surface more than once: sheets or gaps thinner than the cell size; "
+                 "more sites help");
+  }
+  if (share(clip.fallbackCaps, clip.loops) > kFallbackShareWarning) {
+    context.warn(std::to_string(clip.fallbackCaps) + " of " + std::to_string(clip.loops) +
+                 " caps were closed in a simpler way than asked for");
+  }
+}
+
+void warnOfLosses(const Measurement& measurement, const RunContext& context) {
+  const metrics::Fidelity& fidelity = measurement.fidelity;
+  if (fidelity.volumeError > kVolumeErrorWarning) {
+    context.warn("the tessellation's volume differs from that of the form by " + percent(fidelity.volumeError) +
+                 ": parts of the solid are thinner than the cell size; more sites help");
+  }
+  if (fidelity.missedShare > kMissedShareWarning) {
+    context.warn(percent(fidelity.missedShare) +
+                 " of the solid's inside is held by no cell: parts thinner than the cell size; more sites help");
+  }
+  if (!measurement.certificate.valid) {
+    std::string problems;
+    for (const std::string& problem : measurement.certificate.problems) problems += "; " + problem;
+    context.warn("the certificate of validity failed" + problems);
+  }
+}
+
+}  // namespace
+
+const char* toString(ExtraFormat format) {
+  switch (format) {
+    case ExtraFormat::obj:
+      return "obj";
+    case ExtraFormat::off:
+      return "off";
+    case ExtraFormat::stl:
+      return "stl";
+    case ExtraFormat::adjacency:
+      return "adjacency";
+  }
+  throw UsageError("unknown format");
+}
+
+const char* toString(cvt::Optimizer optimizer) { return optimizer == cvt::Optimizer::lbfgs ? "lbfgs" : "lloyd"; }
+
+const char* toString(voronoi::CapKind cap) {
+  switch (cap) {
+    case voronoi::CapKind::flat:
+      return "flat";
+    case voronoi::CapKind::cvt1:
+      return "cvt1";
+    case voronoi::CapKind::cvt2:
+      return "cvt2";
+    case voronoi::CapKind::cvt3:
+      return "cvt3";
+  }
+  throw UsageError("unknown kind of cap");
+}
+
+const char* toString(implicit::RootFinder finder) { return finder == implicit::RootFinder::itp ? "itp" : "bisection"; }
+
+Measurement measure(const mesh::PolyhedralComplex& complex, const Form& form, std::uint64_t seed,
+                    const RunContext& context) {
+  const Stopwatch watch;
+  Measurement result;
+  context.report("moments", 0);
+  result.moments = mesh::cellMoments(complex, context);
+  result.regularities = metrics::regularities(result.moments);
+  result.regularity = metrics::regularity(complex, result.regularities);
+  result.boundaryFlags.assign(static_cast<std::size_t>(complex.cellCount), 0.0);
+  for (Index f = 0; f < complex.faceCount(); ++f) {
+    if (complex.isBoundary(f)) {
+      result.boundaryFlags[static_cast<std::size_t>(complex.faceCells[static_cast<std::size_t>(f)][0])] = 1.0;
+    }
+  }
+  context.throwIfCancelled();
+
+  context.report("certificate", 0);
+  mesh::ValidateOptions validateOptions;
+  validateOptions.seed = seed;
+  result.certificate = mesh::validate(complex, validateOptions, context);
+  context.throwIfCancelled();
+
+  context.report("fidelity", 0);
+  metrics::FidelityOptions fidelityOptions;
+  fidelityOptions.points = form.cloud.positions;
+  fidelityOptions.spacing = form.record.points ? form.record.points->spacing : 0;
+  fidelityOptions.seed = seed;
+  result.fidelity = metrics::fidelity(complex, *form.function, fidelityOptions, context);
+  context.report("fidelity", 1);
+  warnOfLosses(result, context);
+  result.seconds = watch.seconds();
+  return result;
+}
+
+Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context) {
+  const std::vector<std::string> problems = cvt::validate(options);
+  if (!problems.empty()) throw UsageError(problems.front());
+  Tessellation result;
+  result.warnings = form.record.warnings;
+  const RunContext recording = recordWarnings(context, result.warnings);
+  const Stopwatch watch;
+  cvt::TessellateResult tessellated = cvt::tessellate(*form.function, form.record.frame, options, recording);
+  result.complex = std::move(tessellated.complex);
+  result.summary = std::move(tessellated.summary);
+  result.seconds = watch.seconds();
+  warnOfClipping(result.summary, recording);
+  result.measurement = measure(result.complex, form, options.seed, recording);
+  return result;
+}
+
+}  // namespace voroform::pipeline

@@ -1,0 +1,99 @@
+// Usage: help, versions, unknown options, values out of range.
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "program.hpp"
+
+namespace voroform::test {
+namespace {
+
+using testing::AllOf;
+using testing::HasSubstr;
+
+const std::vector<std::string> kCommands = {"reconstruct", "points", "implicit", "tessellate", "evaluate", "info"};
+
+TEST(Options, EveryCommandHasHelpWithItsDefaults) {
+  for (const std::string& command : kCommands) {
+    const Outcome outcome = run({command, "--help"});
+    EXPECT_EQ(outcome.exitCode, 0);
+    EXPECT_THAT(outcome.out, AllOf(HasSubstr("--threads"), HasSubstr("--seed"), HasSubstr("--quiet"),
+                                   HasSubstr("--verbose"), HasSubstr("--log"), HasSubstr("--config")))
+        << command;
+  }
+  const std::string help = run({"tessellate", "--help"}).out;
+  EXPECT_THAT(help,
+              AllOf(HasSubstr("15000"), HasSubstr("cvt3"), HasSubstr("lbfgs"), HasSubstr("itp"), HasSubstr("0.02")));
+}
+
+TEST(Options, GeneralHelpNamesTheCommands) {
+  const Outcome outcome = run({"--help"});
+  EXPECT_EQ(outcome.exitCode, 0);
+  for (const std::string& command : kCommands) EXPECT_THAT(outcome.out, HasSubstr(command));
+}
+
+TEST(Options, VersionIsPrinted) {
+  const Outcome outcome = run({"--version"});
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_THAT(outcome.out, testing::MatchesRegex("voroform [0-9]+\\.[0-9]+\\.[0-9]+\n"));
+}
+
+struct Misuse {
+  const char* name;
+  std::vector<std::string> options;
+  std::vector<std::string> said;
+};
+
+class Misused : public testing::TestWithParam<Misuse> {};
+
+TEST_P(Misused, IsRefusedWithTheOptionTheValueAndTheRange) {
+  const TemporaryFolder folder;
+  std::vector<std::string> arguments = {"tessellate", "shape:sphere", "-o", folder / "out"};
+  const Misuse& misuse = GetParam();
+  arguments.insert(arguments.end(), misuse.options.begin(), misuse.options.end());
+  const Outcome outcome = run(arguments);
+  EXPECT_EQ(outcome.exitCode, 2);
+  for (const std::string& text : misuse.said) EXPECT_THAT(outcome.err, HasSubstr(text));
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, Misused,
+    testing::Values(Misuse{"ZeroSites", {"--sites", "0"}, {"--sites", "0 is not in [1, 2147483647]"}},
+                    Misuse{"NegativeSites", {"--sites", "-5"}, {"--sites", "-5"}},
+                    Misuse{"SitesAsText", {"--sites", "many"}, {"--sites", "many"}},
+                    Misuse{"SitesBeyondIndices", {"--sites", "3000000000"}, {"--sites", "3000000000"}},
+                    Misuse{"NegativeIterations", {"--iterations", "-1"}, {"--iterations", "-1 is not in [0, 1000000]"}},
+                    Misuse{"UnknownMethod", {"--method", "cvt9"}, {"--method", "cvt9", "cvt1, cvt2, cvt3"}},
+                    Misuse{"UnknownOptimizer", {"--optimizer", "newton"}, {"--optimizer", "newton", "lbfgs, lloyd"}},
+                    Misuse{"UnknownRootFinder", {"--root-finder", "guess"}, {"--root-finder", "itp, bisection"}},
+                    Misuse{"NegativeRelativeError", {"--relative-error", "-0.5"}, {"--relative-error", "-0.5"}},
+                    Misuse{"UnknownFormat", {"--formats", "obj,doc"}, {"--formats", "doc", "obj,off,stl,adjacency"}},
+                    Misuse{"NegativeThreads", {"--threads", "-1"}, {"--threads", "-1"}},
+                    Misuse{"UnknownOption", {"--colour", "red"}, {"--colour"}},
+                    Misuse{"EnvelopeOfAShape", {"--envelope", "box"}, {"--envelope", "shape:sphere"}}),
+    [](const testing::TestParamInfo<Misuse>& info) { return std::string(info.param.name); });
+
+TEST(Options, MarginIsAShareOfTheDiagonal) {
+  for (const char* value : {"-0.1", "1.5", "nan"}) {
+    const Outcome outcome = run({"implicit", "cloud.xyz", "-o", "out", "--margin", value});
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("--margin"), HasSubstr(value), HasSubstr("[0, 1]")));
+  }
+}
+
+TEST(Options, UnknownCommandsAndMissingArgumentsAreUsageErrors) {
+  const Outcome unknown = run({"frobnicate"});
+  EXPECT_EQ(unknown.exitCode, 2);
+  EXPECT_THAT(unknown.err, HasSubstr("frobnicate"));
+  EXPECT_EQ(run({}).exitCode, 2);
+  EXPECT_EQ(run({"tessellate"}).exitCode, 2);
+  const Outcome noOutput = run({"tessellate", "shape:sphere"});
+  EXPECT_EQ(noOutput.exitCode, 2);
+  EXPECT_THAT(noOutput.err, HasSubstr("--output"));
+  const Outcome shape = run({"tessellate", "shape:banana", "-o", "out"});
+  EXPECT_EQ(shape.exitCode, 2);
+  EXPECT_THAT(shape.err, AllOf(HasSubstr("banana"), HasSubstr("torus")));
+}
+
+}  // namespace
+}  // namespace voroform::test
