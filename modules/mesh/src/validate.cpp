@@ -106,21 +106,6 @@ void checkTopology(const PolyhedralComplex& complex, const CellFaces& rows, Cert
            "vertex");
 }
 
-double enclosedVolume(const TriangleMesh& mesh) {
-  Box3 box;
-  for (const Vec3& vertex : mesh.vertices) box.extend(vertex);
-  if (box.isEmpty()) return 0;
-  const Vec3 center = box.center();
-  double sum = 0;
-  for (const auto& triangle : mesh.triangles) {
-    const auto corner = [&](std::size_t i) {
-      return Vec3(mesh.vertices[static_cast<std::size_t>(triangle[i])] - center);
-    };
-    sum += corner(0).dot(corner(1).cross(corner(2)));
-  }
-  return sum / 6;
-}
-
 void checkVolumes(const PolyhedralComplex& complex, const TriangleMesh& boundary, Certificate& certificate,
                   const RunContext& context) {
   Violations notPositive;

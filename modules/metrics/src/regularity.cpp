@@ -30,7 +30,8 @@ RegularityStatistics statistics(std::vector<double> values) {
   const auto count = static_cast<double>(values.size());
   result.mean = sum / count;
   result.rmse = std::sqrt(squares / count);
-  std::sort(values.begin(), values.end(), [](double a, double b) { return a < b || (std::isnan(b) && !std::isnan(a)); });
+  std::sort(values.begin(), values.end(),
+            [](double a, double b) { return a < b || (std::isnan(b) && !std::isnan(a)); });
   result.max = values.back();
   const std::size_t middle = values.size() / 2;
   result.median = values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
@@ -52,7 +53,8 @@ std::vector<double> regularities(std::span<const mesh::CellMoments> moments) {
 Regularity regularity(const mesh::PolyhedralComplex& complex, std::span<const double> values) {
   std::vector<std::uint8_t> onBoundary(static_cast<std::size_t>(complex.cellCount), 0);
   for (Index f = 0; f < complex.faceCount(); ++f) {
-    if (complex.isBoundary(f)) onBoundary[static_cast<std::size_t>(complex.faceCells[static_cast<std::size_t>(f)][0])] = 1;
+    if (complex.isBoundary(f))
+      onBoundary[static_cast<std::size_t>(complex.faceCells[static_cast<std::size_t>(f)][0])] = 1;
   }
   std::vector<double> interior;
   std::vector<double> boundary;

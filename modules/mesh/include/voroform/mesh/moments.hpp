@@ -21,4 +21,8 @@ struct CellMoments {
 // origin.
 std::vector<CellMoments> cellMoments(const PolyhedralComplex& complex, const RunContext& context);
 
+// Volume enclosed by a closed, outward mesh (divergence theorem about the center of its bounding box); 0 if it is
+// empty.
+double enclosedVolume(const TriangleMesh& mesh);
+
 }  // namespace voroform::mesh
