@@ -56,12 +56,11 @@ Json describeCells(const mesh::PolyhedralComplex& complex, const Settings& setti
 }
 
 Json describeForm(const fs::path& path, const RunContext& context) {
-  Frame frame;
-  const auto form = implicit::readForm(path, context, &frame);
+  const implicit::FormFile file = implicit::readForm(path, context);
   return {{"kind", "form"},
-          {"vertices", form->mesh().vertices.size()},
-          {"tetrahedra", form->mesh().tetrahedra.size()},
-          {"bounds_of_the_inside", boxJson(form->bounds(), frame)}};
+          {"vertices", file.form->mesh().vertices.size()},
+          {"tetrahedra", file.form->mesh().tetrahedra.size()},
+          {"bounds_of_the_inside", boxJson(file.form->bounds(), file.frame)}};
 }
 
 Json describePoints(const fs::path& path, const RunContext& context) {

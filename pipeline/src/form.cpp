@@ -138,9 +138,9 @@ Form formFromFile(const fs::path& path, const RunContext& context) {
   // The shift loses nothing (see points::prepare), so these are the local coordinates that the form was made from.
   form.cloud.frame = form.record.frame;
   for (Vec3& position : form.cloud.positions) position -= form.record.frame.origin;
-  Frame frame;
-  form.tetrahedral = implicit::readForm(path, context, &frame);
-  if (frame.origin != form.record.frame.origin) {
+  const implicit::FormFile file = implicit::readForm(path, context);
+  form.tetrahedral = file.form;
+  if (file.frame.origin != form.record.frame.origin) {
     throw InputError(recordPath.string() + ": the origin is not the one in " + path.string() +
                      "; the two files do not belong together");
   }
