@@ -18,6 +18,7 @@ namespace voroform {
 namespace {
 
 namespace fs = std::filesystem;
+using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
 using testing::IsEmpty;
@@ -102,7 +103,7 @@ TEST_F(OutputFileTest, FullDiskIsAnEnvironmentErrorAndLeavesNothing) {
     OutputFile file(target);
     file.stream() << std::string(1 << 20, 'x');
     const std::string message = environmentErrorOf([&] { file.commit(); });
-    EXPECT_THAT(message, HasSubstr("a.bin"));
+    EXPECT_THAT(message, AllOf(HasSubstr("a.bin"), HasSubstr("No space left on device")));
   }
   EXPECT_EQ(content(target), "old");
   EXPECT_THAT(names(), ElementsAre("a.bin"));

@@ -26,6 +26,15 @@ TemporaryNames& temporaryNames() {
   return instance;
 }
 
+// Why the file cannot be written: a stream forgets the reason of a write that failed before it is asked, but another
+// write fails for the same one. 0 if this one succeeds.
+int reasonOfFailedWrite(const std::filesystem::path& name) {
+  std::ofstream probe(name, std::ios::binary | std::ios::app);
+  errno = 0;
+  probe << std::string(1 << 16, '\0') << std::flush;
+  return probe ? 0 : errno;
+}
+
 void forget(const std::filesystem::path& name) {
   const std::lock_guard lock(temporaryNames().mutex);
   temporaryNames().names.erase(name);
@@ -54,9 +63,13 @@ OutputFile::~OutputFile() {
 }
 
 void OutputFile::commit() {
+  const bool failedBefore = !stream_;
   errno = 0;
   stream_.flush();
-  if (!stream_) fail("cannot write");
+  if (!stream_) {
+    if (failedBefore) errno = reasonOfFailedWrite(temporary_);
+    fail("cannot write");
+  }
   stream_.close();
   if (stream_.fail()) fail("cannot close");
   std::error_code error;
