@@ -16,7 +16,8 @@ int runPoints(const Settings& settings, const CLI::App&, const RunContext& conte
   pipeline::checkOutputFolder(folder);
   const pipeline::PreparedPoints loaded = pipeline::loadPoints(settings.input, formOptions(settings), context);
   pipeline::ArtifactStore store(folder);
-  points::writePointsPly(store.path(output.filename().string()), loaded.prepared.cloud);
+  store.put(output.filename().string(),
+            [&](const std::filesystem::path& path) { points::writePointsPly(path, loaded.prepared.cloud); });
   context.throwIfCancelled();
   store.commit();
   if (!settings.quiet) {

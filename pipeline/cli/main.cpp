@@ -140,6 +140,15 @@ int run(int argc, char** argv) {
   const std::vector<Command> commands = addCommands(app, settings);
   try {
     app.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    const std::vector<std::string> unknown = app.remaining();
+    if (app.get_subcommands().empty() && !unknown.empty()) {
+      std::cerr << "voroform: error: unknown command or option: " << unknown.front()
+                << "; see voroform --help for the commands\n";
+    } else {
+      app.exit(error);
+    }
+    return kExitUsage;
   } catch (const CLI::ParseError& error) {
     return app.exit(error) == 0 ? kExitDone : kExitUsage;
   }

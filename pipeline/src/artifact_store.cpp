@@ -97,10 +97,19 @@ ArtifactStore::~ArtifactStore() {
   if (!committed_) discard(staging_, createdFolders_);
 }
 
-fs::path ArtifactStore::path(const std::string& name) {
+void ArtifactStore::put(const std::string& name, const std::function<void(const fs::path&)>& write) {
+  try {
+    write(staging_ / name);
+  } catch (const EnvironmentError& error) {
+    std::string message = error.what();
+    const std::string hidden = staging_.string() + "/";
+    if (const auto at = message.find(hidden); at != std::string::npos) {
+      message.replace(at, hidden.size(), (folder_ / "").string());
+    }
+    throw EnvironmentError(message);
+  }
   std::erase(names_, name);
   names_.push_back(name);
-  return staging_ / name;
 }
 
 void ArtifactStore::commit() {

@@ -99,7 +99,7 @@ Evaluation evaluate(const fs::path& folder, const RunContext& context) {
   json["sha256"] = filesJson(folder, names);
   context.throwIfCancelled();
   ArtifactStore store(folder);
-  writeJson(store.path(kMetricsFile), json);
+  store.put(kMetricsFile, [&](const fs::path& path) { writeJson(path, json); });
   store.commit();
   return result;
 }

@@ -69,6 +69,7 @@ PreparedPoints loadPoints(const fs::path& path, const FormOptions& options, cons
     throw InputError(path.string() +
                      ": meshes cannot be tessellated yet; --as points takes the vertices of a mesh as a cloud");
   }
+  context.report("read points", 0);
   points::ReadResult read = points::readPoints(path, recording);
   if (read.summary.faces > 0 && options.inputKind == InputKind::automatic) {
     throw InputError(path.string() + ": the file holds " + std::to_string(read.summary.faces) +
@@ -167,24 +168,24 @@ Form formFromInput(const std::string& input, const FormOptions& options, const R
 
 void writeForm(const Form& form, ArtifactStore& store) {
   if (!form.tetrahedral) return;
-  const fs::path formPath = store.path(kFormFile);
-  const fs::path pointsPath = store.path(kFormPointsFile);
-  const fs::path recordPath = store.path(kFormRecordFile);
   if (form.source.empty()) {
-    implicit::writeForm(formPath, *form.tetrahedral, form.record.frame);
-    points::writePointsPly(pointsPath, form.cloud);
-    writeJson(recordPath, formJson(form.record));
+    store.put(kFormFile,
+              [&](const fs::path& path) { implicit::writeForm(path, *form.tetrahedral, form.record.frame); });
+    store.put(kFormPointsFile, [&](const fs::path& path) { points::writePointsPly(path, form.cloud); });
+    store.put(kFormRecordFile, [&](const fs::path& path) { writeJson(path, formJson(form.record)); });
     return;
   }
   // The very bytes that the form was read from.
-  const auto copy = [](const fs::path& from, const fs::path& to) {
-    std::error_code error;
-    fs::copy_file(from, to, error);
-    if (error) throw EnvironmentError(to.string() + ": cannot copy " + from.string() + ": " + error.message());
+  const auto copy = [&store](const fs::path& from, const char* name) {
+    store.put(name, [&from](const fs::path& to) {
+      std::error_code error;
+      fs::copy_file(from, to, error);
+      if (error) throw EnvironmentError(to.string() + ": cannot copy " + from.string() + ": " + error.message());
+    });
   };
-  copy(form.source, formPath);
-  copy(form.source.parent_path() / kFormPointsFile, pointsPath);
-  copy(fs::path(form.source).replace_extension(".json"), recordPath);
+  copy(form.source, kFormFile);
+  copy(form.source.parent_path() / kFormPointsFile, kFormPointsFile);
+  copy(fs::path(form.source).replace_extension(".json"), kFormRecordFile);
 }
 
 }  // namespace voroform::pipeline

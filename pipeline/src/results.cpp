@@ -26,28 +26,29 @@ std::vector<std::string> writeResults(const Form& form, const Tessellation& tess
   writeForm(form, store);
   const std::vector<mesh::CellData> data = {
       {"volume", volumes()}, {"regularity", t.measurement.regularities}, {"boundary", t.measurement.boundaryFlags}};
-  mesh::writeCellsVtu(store.path(kCellsFile), t.complex, data);
+  using Path = std::filesystem::path;
+  store.put(kCellsFile, [&](const Path& path) { mesh::writeCellsVtu(path, t.complex, data); });
   context.throwIfCancelled();
   const mesh::BoundarySurface surface = mesh::boundarySurface(t.complex);
-  mesh::writeSurfacePly(store.path("surface.ply"), surface, t.complex);
-  mesh::writeSitesPly(store.path("sites.ply"), t.complex.cellSites, t.complex.frame);
+  store.put("surface.ply", [&](const Path& path) { mesh::writeSurfacePly(path, surface, t.complex); });
+  store.put("sites.ply", [&](const Path& path) { mesh::writeSitesPly(path, t.complex.cellSites, t.complex.frame); });
 
   std::vector<std::string> warnings;
   for (const ExtraFormat format : options.formats) {
     switch (format) {
       case ExtraFormat::obj:
-        mesh::writeSurfaceObj(store.path("surface.obj"), surface.mesh);
+        store.put("surface.obj", [&](const Path& path) { mesh::writeSurfaceObj(path, surface.mesh); });
         break;
       case ExtraFormat::off:
-        mesh::writeSurfaceOff(store.path("surface.off"), surface.mesh);
+        store.put("surface.off", [&](const Path& path) { mesh::writeSurfaceOff(path, surface.mesh); });
         break;
       case ExtraFormat::adjacency:
-        mesh::writeAdjacency(store.path("adjacency.csv"), t.complex);
+        store.put("adjacency.csv", [&](const Path& path) { mesh::writeAdjacency(path, t.complex); });
         break;
       case ExtraFormat::stl:
         warnings.emplace_back("surface.stl holds coordinates as 32-bit numbers, rounded to about 7 digits");
         context.warn(warnings.back());
-        mesh::writeSurfaceStl(store.path("surface.stl"), surface.mesh);
+        store.put("surface.stl", [&](const Path& path) { mesh::writeSurfaceStl(path, surface.mesh); });
         break;
     }
     context.throwIfCancelled();
@@ -55,10 +56,8 @@ std::vector<std::string> writeResults(const Form& form, const Tessellation& tess
 
   Json json = metricsJson(form, t, options);
   for (std::string& warning : warnings) json["warnings"].push_back(std::move(warning));
-  const std::vector<std::string> names = store.names();
-  const std::filesystem::path metricsPath = store.path(kMetricsFile);
-  json["sha256"] = filesJson(metricsPath.parent_path(), names);
-  writeJson(metricsPath, json);
+  json["sha256"] = filesJson(store.pathOf(""), store.names());
+  store.put(kMetricsFile, [&](const Path& path) { writeJson(path, json); });
   context.throwIfCancelled();
   store.commit();
   context.report("writing", 1);

@@ -3,6 +3,8 @@
 #include <cmath>
 #include <cstdio>
 
+#include <unistd.h>
+
 #include "voroform/core/error.hpp"
 #include "warnings.hpp"
 
@@ -12,7 +14,7 @@ namespace {
 
 // Above these, what was lost is worth a warning.
 constexpr double kVolumeErrorWarning = 0.02;
-constexpr double kMissedShareWarning = 0.01;
+constexpr double kMissedShareWarning = 0.02;
 constexpr double kFallbackShareWarning = 0.01;
 constexpr double kMultiLoopShareWarning = 0.01;
 
@@ -127,7 +129,20 @@ Measurement measure(const mesh::PolyhedralComplex& complex, const Form& form, st
   return result;
 }
 
+void checkMemory(const cvt::TessellateOptions& options) {
+  if (options.sites < 1) return;
+  std::uint64_t limit = options.memoryLimit;
+  if (limit == 0) {
+    limit = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
+  }
+  const std::uint64_t needed = cvt::estimatedMemory(options.sites);
+  if (needed <= limit) return;
+  throw EnvironmentError(std::to_string(options.sites) + " sites need about " + std::to_string(needed >> 20U) +
+                         " MiB of memory, " + std::to_string(limit >> 20U) + " MiB are there: use fewer sites");
+}
+
 Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context) {
+  checkMemory(options);
   const std::vector<std::string> problems = cvt::validate(options);
   if (!problems.empty()) throw UsageError(problems.front());
   Tessellation result;

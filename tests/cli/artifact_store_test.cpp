@@ -17,15 +17,17 @@ using test::TemporaryFolder;
 using testing::ElementsAre;
 using testing::IsEmpty;
 
-void put(const std::filesystem::path& path, const std::string& content) { std::ofstream(path) << content; }
+auto writer(const std::string& content) {
+  return [content](const std::filesystem::path& path) { std::ofstream(path) << content; };
+}
 
 TEST(ArtifactStore, ShowsItsFilesOnlyAfterCommit) {
   const TemporaryFolder base;
   const auto folder = base / "a";
   {
     ArtifactStore store(folder / "b");
-    put(store.path("one"), "1");
-    put(store.path("two"), "2");
+    store.put("one", writer("1"));
+    store.put("two", writer("2"));
     EXPECT_THAT(namesIn(folder / "b"), ElementsAre(testing::StartsWith(".partial-")));
     store.commit();
     EXPECT_THAT(store.names(), ElementsAre("one", "two"));
@@ -38,7 +40,7 @@ TEST(ArtifactStore, LeavesNothingWithoutCommit) {
   const TemporaryFolder base;
   {
     ArtifactStore store(base / "new" / "deep");
-    put(store.path("one"), "1");
+    store.put("one", writer("1"));
   }
   EXPECT_THAT(namesIn(base / ""), IsEmpty());
 }
@@ -48,7 +50,7 @@ TEST(ArtifactStore, KeepsWhatWasThereWithoutCommit) {
   base.write("one", "old");
   {
     ArtifactStore store(base / "");
-    put(store.path("one"), "new");
+    store.put("one", writer("new"));
   }
   EXPECT_THAT(namesIn(base / ""), ElementsAre("one"));
   EXPECT_EQ(readFile(base / "one"), "old");
@@ -59,17 +61,32 @@ TEST(ArtifactStore, MovesNothingIfOneFileCannotBeMoved) {
   std::filesystem::create_directories(base / "two");
   {
     ArtifactStore store(base / "");
-    put(store.path("one"), "1");
-    put(store.path("two"), "2");
+    store.put("one", writer("1"));
+    store.put("two", writer("2"));
     EXPECT_THROW(store.commit(), EnvironmentError);
   }
   EXPECT_THAT(namesIn(base / ""), ElementsAre("two"));
 }
 
+TEST(ArtifactStore, NamesTheFinalPathOfWhatCouldNotBeWritten) {
+  const TemporaryFolder base;
+  const auto failing = [](const std::filesystem::path& path) { throw EnvironmentError(path.string() + ": disk full"); };
+  std::string message;
+  {
+    ArtifactStore store(base / "out");
+    try {
+      store.put("one", failing);
+    } catch (const EnvironmentError& error) {
+      message = error.what();
+    }
+  }
+  EXPECT_EQ(message, (base / "out/one").string() + ": disk full");
+}
+
 TEST(ArtifactStore, IsRemovedOnASignal) {
   const TemporaryFolder base;
   ArtifactStore store(base / "new");
-  put(store.path("one"), "1");
+  store.put("one", writer("1"));
   removeUncommittedArtifacts();
   EXPECT_THAT(namesIn(base / ""), IsEmpty());
 }

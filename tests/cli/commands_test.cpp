@@ -51,6 +51,7 @@ TEST_F(Commands, ReconstructWritesAValidTessellationOfTheSolid) {
   // The volume of the torus, 2π²Rr².
   EXPECT_NEAR(validity["volume"].get<double>(), 3.158, 0.06);
   EXPECT_LT(metrics["fidelity"]["volume_error"].get<double>(), 0.02);
+  // Its surface stays clear of the envelope.
   EXPECT_EQ(metrics["fidelity"]["envelope_share"], 0);
   EXPECT_LT(metrics["fidelity"]["unsupported_share"].get<double>(), 0.01);
   EXPECT_GT(metrics["regularity"]["all"]["mean"].get<double>(), 0.0785);
@@ -149,7 +150,7 @@ TEST_F(Commands, InfoDescribesFormsAndCells) {
 
 TEST_F(Commands, QuietPrintsNothingAndTheLogEverything) {
   const Outcome outcome = run(
-      {"tessellate", "shape:sphere", "-o", folder_ / "out", "--sites", "100", "--quiet", "--log", folder_ / "log.txt"});
+      {"tessellate", "shape:sphere", "-o", folder_ / "out", "--sites", "500", "--quiet", "--log", folder_ / "log.txt"});
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   EXPECT_EQ(outcome.out, "");
   EXPECT_EQ(outcome.err, "");

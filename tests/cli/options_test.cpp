@@ -43,6 +43,8 @@ struct Misuse {
   std::vector<std::string> said;
 };
 
+void PrintTo(const Misuse& misuse, std::ostream* out) { *out << misuse.name; }
+
 class Misused : public testing::TestWithParam<Misuse> {};
 
 TEST_P(Misused, IsRefusedWithTheOptionTheValueAndTheRange) {
@@ -71,7 +73,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Misuse{"NegativeThreads", {"--threads", "-1"}, {"--threads", "-1"}},
                     Misuse{"UnknownOption", {"--colour", "red"}, {"--colour"}},
                     Misuse{"EnvelopeOfAShape", {"--envelope", "box"}, {"--envelope", "shape:sphere"}}),
-    [](const testing::TestParamInfo<Misuse>& info) { return std::string(info.param.name); });
+    [](const testing::TestParamInfo<Misuse>& tested) { return std::string(tested.param.name); });
 
 TEST(Options, MarginIsAShareOfTheDiagonal) {
   for (const char* value : {"-0.1", "1.5", "nan"}) {

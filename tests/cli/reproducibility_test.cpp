@@ -86,7 +86,7 @@ TEST_F(Reproducibility, TheStoredFormGivesTheSameFilesFarAway) {
   const auto metrics = readJson(whole / "metrics.json");
   EXPECT_EQ(metrics["validity"]["valid"], true);
   // The volume of the torus, 2π²Rr².
-  EXPECT_NEAR(metrics["validity"]["volume"].get<double>(), 3.158, 0.06);
+  EXPECT_NEAR(metrics["fidelity"]["sampled_volume"].get<double>(), 3.158, 0.06);
 }
 
 TEST_F(Reproducibility, EvaluateFindsTheSameMetrics) {

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -17,8 +18,11 @@ class ArtifactStore {
   ArtifactStore(const ArtifactStore&) = delete;
   ArtifactStore& operator=(const ArtifactStore&) = delete;
 
-  // Where to write the file that will be folder/name. Files are moved in the order in which their names were asked for.
-  std::filesystem::path path(const std::string& name);
+  // Calls write with the path to write the file to that will be folder/name; messages of what it throws name the
+  // latter. Files are moved in the order in which they were written.
+  void put(const std::string& name, const std::function<void(const std::filesystem::path&)>& write);
+  // Where a file that was put lies until commit().
+  std::filesystem::path pathOf(const std::string& name) const { return staging_ / name; }
   const std::vector<std::string>& names() const { return names_; }
   void commit();
 

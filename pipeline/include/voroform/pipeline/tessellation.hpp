@@ -47,6 +47,10 @@ struct Tessellation {
   double seconds = 0;                 // of the tessellation alone
 };
 
+// Throws EnvironmentError if so many sites are estimated to need more than the limit or the machine's memory: to be
+// called before the form is made, so that a long run fails at its start.
+void checkMemory(const cvt::TessellateOptions& options);
+
 // Tessellates and measures. Warns of what was lost. Throws as cvt::tessellate does.
 Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context);
 
