@@ -145,7 +145,13 @@ class Enveloped final : public ImplicitFunction {
   double clearance(const Vec3& p) const override { return std::max(form_->clearance(p), boxClearance(box_, p)); }
   Vec3 gradient(const Vec3& p) const override { return onBox(p) ? boxGradient(box_, p) : form_->gradient(p); }
   Box3 bounds() const override { return form_->bounds().intersection(inflated(box_)); }
-  bool onEnvelope(const Vec3& p) const override { return onBox(p) || form_->onEnvelope(p); }
+  // Compares distances, to first order: the scale of the form's values is arbitrary, and points of interest lie near S
+  // only, not on it.
+  bool onEnvelope(const Vec3& p) const override {
+    const double slope = form_->gradient(p).norm();
+    const double boxValue = boxDistance(box_, p) * (slope > 0 ? slope : 1);
+    return boxValue >= form_->value(p) || form_->onEnvelope(p);
+  }
 
   void values(std::span<const Vec3> points, std::span<double> out) const override {
     form_->values(points, out);
