@@ -72,7 +72,8 @@ class Progress {
 };
 
 // Moves the sites without a cell into the largest cells, one each.
-Index reseed(std::vector<Vec3>& sites, const std::vector<voronoi::SiteMoments>& moments, std::uint64_t seed, int round) {
+Index reseed(std::vector<Vec3>& sites, const std::vector<voronoi::SiteMoments>& moments, std::uint64_t seed,
+             int round) {
   std::vector<Index> empty;
   std::vector<Index> largest;
   for (std::size_t i = 0; i < sites.size(); ++i) {

@@ -37,10 +37,14 @@ void requireMemory(const TessellateOptions& options) {
 
 const char* toString(StopReason reason) {
   switch (reason) {
-    case StopReason::iterations: return "iterations";
-    case StopReason::converged: return "converged";
-    case StopReason::relativeError: return "relative-error";
-    case StopReason::stalled: return "stalled";
+    case StopReason::iterations:
+      return "iterations";
+    case StopReason::converged:
+      return "converged";
+    case StopReason::relativeError:
+      return "relative-error";
+    case StopReason::stalled:
+      return "stalled";
   }
   return "";
 }
@@ -53,7 +57,8 @@ std::vector<std::string> validate(const TessellateOptions& options) {
   require(options.sites >= 1 && options.sites <= kMostSites,
           "sites is " + std::to_string(options.sites) + ", but must be from 1 to " + std::to_string(kMostSites));
   require(options.iterations >= 0, "iterations is " + std::to_string(options.iterations) + ", but must be at least 0");
-  require(options.convergence >= 0, "convergence is " + std::to_string(options.convergence) + ", but must be at least 0");
+  require(options.convergence >= 0,
+          "convergence is " + std::to_string(options.convergence) + ", but must be at least 0");
   require(options.relativeError >= 0,
           "relative-error is " + std::to_string(options.relativeError) + ", but must be at least 0");
   require(options.reseedRounds >= 0,

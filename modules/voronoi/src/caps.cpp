@@ -4,8 +4,10 @@
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <string>
 
 #include "projection.hpp"
+#include "voroform/core/error.hpp"
 #include "voroform/core/parallel.hpp"
 
 namespace voroform::voronoi {
@@ -17,9 +19,11 @@ constexpr std::size_t kGrain = 64;
 constexpr double kReach = 2;
 // First step of the search for S, in units of the loop's radius.
 constexpr double kFirstStep = 0.1;
-// Cap points keep this share of the way to the cell's border clear, so that they stay inside the cell: a fan over a loop
-// on the border of a convex cell about a point inside it cannot cross itself.
+// Cap points keep this share of the way to the cell's border clear, so that they stay inside the cell: a fan over a
+// loop on the border of a convex cell about a point inside it cannot cross itself.
 constexpr double kBorderShare = 1e-3;
+// A cap over a loop in a facet's plane encloses a volume if its point is at least this high, in units of the radius.
+constexpr double kPlanarHeight = 1e-6;
 // Where caps of one cell cross, their points are tried at these heights over the loops' centroids, in units of radius.
 constexpr double kOtherHeights[] = {0.0, 0.1, -0.1, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75};
 
@@ -32,16 +36,19 @@ struct LoopFrame {
   double radius;
 };
 
-// A cap in the making: its apex, if it is a fan, and its triangles; the apex is numbered kNone.
+// A cap in the making: its apex, if it is a fan, and its triangles; the apex is numbered kNone. A cap may instead fall
+// into a facet of the cell, onto one of its polygons.
 struct Cap {
   std::optional<Vec3> apex;
   std::vector<Triangle> triangles;
+  Index collapsedPolygon = kNone;
 };
 
 struct CapChunk {
   std::vector<Vec3> points;
   std::vector<std::uint32_t> counts;
   std::vector<Triangle> triangles;  // the chunk's own points numbered −1, −2, …
+  std::vector<Caps::Collapsed> collapsed;
   ClipSummary summary;
 };
 
@@ -55,7 +62,11 @@ class CellCapper {
   void cap(Index first, Index last) {
     site_ = clipped_.loopSites[static_cast<std::size_t>(first)];
     caps_.clear();
-    for (Index l = first; l < last; ++l) caps_.push_back(makeCap(clipped_.loop(l), last - first == 1));
+    for (Index l = first; l < last; ++l) {
+      const auto loop = clipped_.loop(l);
+      const Index neighbor = neighborInPlane(loop);
+      caps_.push_back(neighbor == kNone ? makeCap(loop, last - first == 1) : makePlanarCap(loop, neighbor));
+    }
     if (caps_.size() > 1 && cross()) separate(first, last);
     for (const Cap& cap : caps_) emit(cap);
   }
@@ -96,7 +107,8 @@ class CellCapper {
   static Cap fan(std::span<const Index> loop, const Vec3& apex) {
     Cap cap;
     cap.apex = apex;
-    for (std::size_t k = 0; k < loop.size(); ++k) cap.triangles.push_back({loop[k], loop[(k + 1) % loop.size()], kNone});
+    for (std::size_t k = 0; k < loop.size(); ++k)
+      cap.triangles.push_back({loop[k], loop[(k + 1) % loop.size()], kNone});
     return cap;
   }
 
@@ -111,21 +123,78 @@ class CellCapper {
     return fan(loop, projected(frame));
   }
 
+  // The sites on the other side of the facets that a loop's point lies on; kNone fills up.
+  std::array<Index, 2> neighborsAt(Index point) const {
+    std::array<Index, 2> others = {kNone, kNone};
+    const Index extra = point - diagram_.vertexCount();
+    if (extra < clipped_.rootCount) {
+      const auto& sites = clipped_.rootSites[static_cast<std::size_t>(extra)];
+      std::copy_if(sites.begin(), sites.end(), others.begin(), [&](Index s) { return s != site_; });
+    } else {
+      const Index facet = clipped_.chordPointFacets[static_cast<std::size_t>(extra - clipped_.rootCount)];
+      const auto& [a, b] = diagram_.facetSites[static_cast<std::size_t>(facet)];
+      others[0] = a == site_ ? b : a;
+    }
+    return others;
+  }
+
+  // The neighbor whose facet holds the whole loop, or kNone.
+  Index neighborInPlane(std::span<const Index> loop) const {
+    for (const Index neighbor : neighborsAt(loop[0])) {
+      if (neighbor != kNone && std::all_of(loop.begin(), loop.end(), [&](Index point) {
+            const auto others = neighborsAt(point);
+            return others[0] == neighbor || others[1] == neighbor;
+          })) {
+        return neighbor;
+      }
+    }
+    return kNone;
+  }
+
+  // The cap of a loop in a facet's plane: bent into the cell if S bulges there, else fallen into the facet.
+  Cap makePlanarCap(std::span<const Index> loop, Index neighbor) {
+    if (options_.cap == CapKind::cvt2 || options_.cap == CapKind::cvt3) {
+      const LoopFrame frame = frameOf(loop);
+      const std::optional<double> height = projection(frame);
+      if (height && *height > kPlanarHeight * frame.radius) return fan(loop, frame.centroid + *height * frame.normal);
+    }
+    ++chunk_.summary.fallbackCaps;
+    Cap cap;
+    for (const Index facet : diagram_.facetsOf(site_)) {
+      const auto& [a, b] = diagram_.facetSites[static_cast<std::size_t>(facet)];
+      if ((a == site_ ? b : a) != neighbor) continue;
+      auto polygon = std::lower_bound(clipped_.polygonFacets.begin(), clipped_.polygonFacets.end(), facet) -
+                     clipped_.polygonFacets.begin();
+      for (; polygon < clipped_.polygonCount() && clipped_.polygonFacets[static_cast<std::size_t>(polygon)] == facet;
+           ++polygon) {
+        const auto points = clipped_.polygon(static_cast<Index>(polygon));
+        if (std::find(points.begin(), points.end(), loop[0]) != points.end()) {
+          cap.collapsedPolygon = static_cast<Index>(polygon);
+        }
+      }
+    }
+    if (cap.collapsedPolygon == kNone) {
+      throw MethodError("the planar loop of site " + std::to_string(site_) + " bounds no polygon");
+    }
+    return cap;
+  }
+
   Vec3 projected(const LoopFrame& frame) {
+    const std::optional<double> height = projection(frame);
+    if (!height) ++chunk_.summary.unprojectedPoints;
+    return frame.centroid + height.value_or(0.0) * frame.normal;
+  }
+
+  // Where S lies over the loop's centroid, along the normal.
+  std::optional<double> projection(const LoopFrame& frame) {
     ++chunk_.summary.capPoints;
     Ray ray;
     ray.origin = frame.centroid;
     ray.direction = frame.normal;
     ray.outward = std::min(kReach * frame.radius, (1 - kBorderShare) * reachInCell(frame.centroid, frame.normal));
     ray.inward = std::min(kReach * frame.radius, (1 - kBorderShare) * reachInCell(frame.centroid, -frame.normal));
-    const std::optional<double> distance =
-        projectOnSurface(f_, ray, kFirstStep * frame.radius, options_.rootTolerance * frame.radius, options_.rootFinder,
-                         chunk_.summary.evaluations);
-    if (!distance) {
-      ++chunk_.summary.unprojectedPoints;
-      return frame.centroid;
-    }
-    return frame.centroid + *distance * frame.normal;
+    return projectOnSurface(f_, ray, kFirstStep * frame.radius, options_.rootTolerance * frame.radius,
+                            options_.rootFinder, chunk_.summary.evaluations);
   }
 
   std::optional<Cap> hullOf(std::span<const Index> loop) const {
@@ -133,15 +202,13 @@ class CellCapper {
     std::vector<std::array<Index, 2>> facets;
     for (const Index point : loop) {
       points.push_back(position(point));
-      const auto& sites = clipped_.rootSites[static_cast<std::size_t>(point - diagram_.vertexCount())];
-      std::array<Index, 2> others{};
-      std::copy_if(sites.begin(), sites.end(), others.begin(), [&](Index s) { return s != site_; });
-      facets.push_back(others);
+      facets.push_back(neighborsAt(point));
     }
     std::vector<Vec3> kept;
     for (const Index facet : diagram_.facetsOf(site_)) {
       for (const Index v : diagram_.facet(facet)) {
-        if (clipped_.inside[static_cast<std::size_t>(v)] != 0) kept.push_back(diagram_.vertices[static_cast<std::size_t>(v)]);
+        if (clipped_.inside[static_cast<std::size_t>(v)] != 0)
+          kept.push_back(diagram_.vertices[static_cast<std::size_t>(v)]);
       }
     }
     const auto triangles = hullCap(points, facets, kept);
@@ -175,8 +242,10 @@ class CellCapper {
     for (Index l = first; l < last; ++l) frames.push_back(frameOf(clipped_.loop(l)));
     const std::size_t heights = std::size(kOtherHeights);
     const auto fanAt = [&](std::size_t cap, double height) {
+      if (asked[cap].collapsedPolygon != kNone) return asked[cap];
       const LoopFrame& frame = frames[cap];
-      const double reach = (1 - kBorderShare) * reachInCell(frame.centroid, height < 0 ? Vec3(-frame.normal) : frame.normal);
+      const double reach =
+          (1 - kBorderShare) * reachInCell(frame.centroid, height < 0 ? Vec3(-frame.normal) : frame.normal);
       const double distance = std::copysign(std::min(std::abs(height) * frame.radius, reach), height);
       return fan(clipped_.loop(first + static_cast<Index>(cap)), frame.centroid + distance * frame.normal);
     };
@@ -198,6 +267,7 @@ class CellCapper {
   }
 
   void emit(const Cap& cap) {
+    if (cap.collapsedPolygon != kNone) chunk_.collapsed.push_back({cap.collapsedPolygon, site_});
     if (cap.apex) chunk_.points.push_back(*cap.apex);
     const Index apex = -static_cast<Index>(chunk_.points.size());
     for (Triangle triangle : cap.triangles) {
@@ -246,6 +316,7 @@ Caps buildCaps(const Diagram& diagram, ClippedDiagram& clipped, const implicit::
       caps.triangles.push_back(triangle);
     }
     caps.points.insert(caps.points.end(), chunk.points.begin(), chunk.points.end());
+    caps.collapsed.insert(caps.collapsed.end(), chunk.collapsed.begin(), chunk.collapsed.end());
     caps.triangleOffsets.insert(caps.triangleOffsets.end(), chunk.counts.begin(), chunk.counts.end());
     clipped.summary.capPoints += chunk.summary.capPoints;
     clipped.summary.unprojectedPoints += chunk.summary.unprojectedPoints;

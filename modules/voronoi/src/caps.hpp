@@ -12,8 +12,16 @@ namespace voroform::voronoi {
 // Caps of all loops. A triangle's points are numbered like the clipped diagram's; the caps' own points follow them.
 struct Caps {
   std::vector<Vec3> points;
-  std::vector<std::uint32_t> triangleOffsets;  // rows: loops → triangles
-  std::vector<std::array<Index, 3>> triangles; // counter-clockwise seen from outside the solid
+  std::vector<std::uint32_t> triangleOffsets;   // rows: loops → triangles
+  std::vector<std::array<Index, 3>> triangles;  // counter-clockwise seen from outside the solid
+
+  // Loops that lie in the plane of one of their cell's facets and whose caps do not leave it: what the cell holds there
+  // has no volume. It is given up, and the facet's polygon becomes boundary of the cell on its other side.
+  struct Collapsed {
+    Index polygon;
+    Index site;  // whose cell gives it up
+  };
+  std::vector<Collapsed> collapsed;
 };
 
 // Adds to the clipped diagram's summary.
@@ -25,6 +33,10 @@ Caps buildCaps(const Diagram& diagram, ClippedDiagram& clipped, const implicit::
 std::vector<std::array<std::size_t, 3>> hullCap(std::span<const Vec3> loop,
                                                 std::span<const std::array<Index, 2>> facetsOf,
                                                 std::span<const Vec3> kept);
+
+// Triangles of a simple polygon in the plane with the given normal, seen from which it is counter-clockwise, by cutting
+// ears; as indices into the polygon.
+std::vector<std::array<std::size_t, 3>> cutEars(std::span<const Vec3> polygon, const Vec3& normal);
 
 // Whether any triangle of `a` meets any of `b` (exact).
 bool trianglesMeet(std::span<const std::array<Vec3, 3>> a, std::span<const std::array<Vec3, 3>> b);

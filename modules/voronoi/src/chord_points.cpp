@@ -76,14 +76,16 @@ bool simple(const std::vector<std::vector<Eigen::Vector2d>>& rings) {
 // The chords of one facet and the points found for them.
 class FacetChords {
  public:
-  FacetChords(const Diagram& diagram, const ClippedDiagram& clipped, Index facet) : diagram_(diagram), clipped_(clipped) {
+  FacetChords(const Diagram& diagram, const ClippedDiagram& clipped, Index facet)
+      : diagram_(diagram), clipped_(clipped) {
     const auto& [a, b] = diagram.facetSites[static_cast<std::size_t>(facet)];
     const Vec3 normal =
         (diagram.sites[static_cast<std::size_t>(b)] - diagram.sites[static_cast<std::size_t>(a)]).normalized();
     frame_.u = normal.unitOrthogonal();
     frame_.v = normal.cross(frame_.u);
     frame_.origin = clipped.position(diagram, diagram.facet(facet).front());
-    for (const Index v : diagram.facet(facet)) corners_.push_back(frame_(diagram.vertices[static_cast<std::size_t>(v)]));
+    for (const Index v : diagram.facet(facet))
+      corners_.push_back(frame_(diagram.vertices[static_cast<std::size_t>(v)]));
   }
 
   // Where S meets the facet's plane, along the chord's perpendicular through its middle.
@@ -103,8 +105,8 @@ class FacetChords {
     ray.direction = out.x() * frame_.u + out.y() * frame_.v;
     ray.outward = std::min(reach, (1 - kBorderShare) * reachInFacet(corners_, frame_(middle), out));
     ray.inward = std::min(reach, (1 - kBorderShare) * reachInFacet(corners_, frame_(middle), -out));
-    const std::optional<double> distance = projectOnSurface(f, ray, kFirstStep * length, options.rootTolerance * length,
-                                                            options.rootFinder, evaluations);
+    const std::optional<double> distance =
+        projectOnSurface(f, ray, kFirstStep * length, options.rootTolerance * length, options.rootFinder, evaluations);
     if (!distance) return std::nullopt;
     return middle + *distance * ray.direction;
   }
@@ -174,8 +176,7 @@ void bendFacet(const Diagram& diagram, const ClippedDiagram& clipped, const Face
   for (std::size_t p = range.polygonBegin; p < range.polygonEnd; ++p) {
     auto& ring = rings.emplace_back();
     walkPolygon(
-        clipped, range, p,
-        [&](Index point) { ring.push_back(facet.inPlane(clipped.position(diagram, point))); },
+        clipped, range, p, [&](Index point) { ring.push_back(facet.inPlane(clipped.position(diagram, point))); },
         [&](std::size_t c) {
           ++counts.tried;
           found[c] = facet.find(clipped.chords[c], f, options, counts.evaluations);
@@ -215,6 +216,7 @@ void addChordPoints(const Diagram& diagram, const implicit::ImplicitFunction& f,
     if (!found[c]) continue;
     clipped.chords[c].point = diagram.vertexCount() + static_cast<Index>(clipped.points.size());
     clipped.points.push_back(*found[c]);
+    clipped.chordPointFacets.push_back(clipped.chords[c].facet);
   }
 
   std::vector<std::uint32_t> sizes;

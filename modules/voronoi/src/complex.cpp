@@ -10,15 +10,23 @@ namespace {
 
 using State = ClippedDiagram::FacetState;
 
-// Calls visit(polygon, facet) for what the solid keeps of each facet, in the facets' order.
+// Calls visit(polygon, facet, owners) for what the solid keeps of each facet, in the facets' order. Owners are the
+// facet's sites, or kNone for one that is a ghost or has given the polygon up; polygons that both gave up are left out.
 template <class Visit>
-void forEachPolygon(const Diagram& diagram, const ClippedDiagram& clipped, const Visit& visit) {
+void forEachPolygon(const Diagram& diagram, const ClippedDiagram& clipped, const Caps& caps, const Visit& visit) {
   Index polygon = 0;
   for (Index f = 0; f < diagram.facetCount(); ++f) {
     const State state = clipped.facetStates[static_cast<std::size_t>(f)];
-    if (state == State::whole) visit(diagram.facet(f), f);
-    for (; polygon < clipped.polygonCount() && clipped.polygonFacets[static_cast<std::size_t>(polygon)] == f; ++polygon) {
-      visit(clipped.polygon(polygon), f);
+    std::array<Index, 2> sites = diagram.facetSites[static_cast<std::size_t>(f)];
+    if (!diagram.isReal(sites[1])) sites[1] = kNone;
+    if (state == State::whole) visit(diagram.facet(f), f, sites);
+    for (; polygon < clipped.polygonCount() && clipped.polygonFacets[static_cast<std::size_t>(polygon)] == f;
+         ++polygon) {
+      std::array<Index, 2> owners = sites;
+      for (const Caps::Collapsed& collapsed : caps.collapsed) {
+        if (collapsed.polygon == polygon) std::replace(owners.begin(), owners.end(), collapsed.site, kNone);
+      }
+      if (owners[0] != kNone || owners[1] != kNone) visit(clipped.polygon(polygon), f, owners);
     }
   }
 }
@@ -45,10 +53,11 @@ mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clippe
   std::vector<Index> cellOf(static_cast<std::size_t>(diagram.siteCount), 0);
   std::size_t faceCount = caps.triangles.size();
   std::size_t cornerCount = 3 * caps.triangles.size();
-  forEachPolygon(diagram, clipped, [&](std::span<const Index> polygon, Index facet) {
+  using Owners = std::array<Index, 2>;
+  forEachPolygon(diagram, clipped, caps, [&](std::span<const Index> polygon, Index, const Owners& owners) {
     for (const Index point : polygon) vertexOf[static_cast<std::size_t>(point)] = 1;
-    for (const Index site : diagram.facetSites[static_cast<std::size_t>(facet)]) {
-      if (diagram.isReal(site)) cellOf[static_cast<std::size_t>(site)] = 1;
+    for (const Index site : owners) {
+      if (site != kNone) cellOf[static_cast<std::size_t>(site)] = 1;
     }
     ++faceCount;
     cornerCount += polygon.size();
@@ -73,12 +82,26 @@ mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clippe
   complex.faceCells.reserve(faceCount);
   complex.faceTags.reserve(faceCount);
   std::vector<Index> loop;
-  forEachPolygon(diagram, clipped, [&](std::span<const Index> polygon, Index facet) {
+  forEachPolygon(diagram, clipped, caps, [&](std::span<const Index> polygon, Index facet, const Owners& owners) {
     loop.clear();
     for (const Index point : polygon) loop.push_back(vertexOf[static_cast<std::size_t>(point)]);
+    if (owners[0] != kNone && owners[1] != kNone) {
+      complex.addFace(loop, cellOf[static_cast<std::size_t>(owners[0])], cellOf[static_cast<std::size_t>(owners[1])]);
+      return;
+    }
+    // Boundary of the one owner left; as triangles, since chord points may have made the polygon reentrant.
     const auto& [a, b] = diagram.facetSites[static_cast<std::size_t>(facet)];
-    complex.addFace(loop, cellOf[static_cast<std::size_t>(a)],
-                    diagram.isReal(b) ? cellOf[static_cast<std::size_t>(b)] : kNone);
+    Vec3 normal = diagram.sites[static_cast<std::size_t>(b)] - diagram.sites[static_cast<std::size_t>(a)];
+    const Index owner = owners[0] != kNone ? owners[0] : owners[1];
+    if (owners[0] == kNone) {
+      std::reverse(loop.begin(), loop.end());
+      normal = -normal;
+    }
+    std::vector<Vec3> corners;
+    for (const Index vertex : loop) corners.push_back(complex.vertices[static_cast<std::size_t>(vertex)]);
+    for (const auto& [i, j, k] : cutEars(corners, normal)) {
+      complex.addFace(std::array{loop[i], loop[j], loop[k]}, cellOf[static_cast<std::size_t>(owner)], kNone);
+    }
   });
 
   std::vector<mesh::FaceTag> tags(caps.triangles.size());

@@ -27,7 +27,8 @@ using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_3<Index, Kernel>;
 using CellBase =
     CGAL::Triangulation_cell_base_with_info_3<Index, Kernel, CGAL::Delaunay_triangulation_cell_base_3<Kernel>>;
-using Triangulation = CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
+using Triangulation =
+    CGAL::Delaunay_triangulation_3<Kernel, CGAL::Triangulation_data_structure_3<VertexBase, CellBase>>;
 
 std::vector<Kernel::Point_3> toKernel(std::span<const Vec3> points) {
   std::vector<Kernel::Point_3> result;
@@ -70,7 +71,8 @@ Triangulation triangulate(std::span<const Vec3> input) {
 Tetrahedra delaunayTetrahedra(std::span<const Vec3> points, Index realCount) {
   const Triangulation triangulation = triangulate(points);
 
-  // A counting sort by the lowest site gives each tetrahedron its number; neighbors in space become neighbors in memory.
+  // A counting sort by the lowest site gives each tetrahedron its number; neighbors in space become neighbors in
+  // memory.
   std::vector<std::uint32_t> offsets(static_cast<std::size_t>(realCount), 0);
   const auto lowestSite = [&](Triangulation::Cell_handle cell) {
     Index lowest = realCount;

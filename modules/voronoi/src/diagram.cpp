@@ -113,9 +113,8 @@ FacetChunk collectFacets(const Diagram& diagram, std::size_t begin, std::size_t 
 void buildFacets(Diagram& diagram, const RunContext& context) {
   const std::size_t count = diagram.vertices.size();
   std::vector<FacetChunk> chunks((count + kGrain - 1) / kGrain);
-  parallelFor(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
-    chunks[begin / kGrain] = collectFacets(diagram, begin, end);
-  });
+  parallelFor(context, count, kGrain,
+              [&](std::size_t begin, std::size_t end) { chunks[begin / kGrain] = collectFacets(diagram, begin, end); });
 
   std::vector<std::size_t> facetBegin(chunks.size());
   std::vector<std::size_t> vertexBegin(chunks.size());
@@ -131,7 +130,8 @@ void buildFacets(Diagram& diagram, const RunContext& context) {
   diagram.facetOffsets.back() = static_cast<std::uint32_t>(vertexBegin.back());
   parallelFor(context, chunks.size(), 1, [&](std::size_t c, std::size_t) {
     FacetChunk chunk = std::move(chunks[c]);
-    std::copy(chunk.sites.begin(), chunk.sites.end(), diagram.facetSites.begin() + static_cast<std::ptrdiff_t>(facetBegin[c]));
+    std::copy(chunk.sites.begin(), chunk.sites.end(),
+              diagram.facetSites.begin() + static_cast<std::ptrdiff_t>(facetBegin[c]));
     std::copy(chunk.vertices.begin(), chunk.vertices.end(),
               diagram.facetVertices.begin() + static_cast<std::ptrdiff_t>(vertexBegin[c]));
     std::size_t offset = vertexBegin[c];
@@ -167,7 +167,7 @@ Diagram buildDiagram(std::span<const Vec3> sites, const Box3& domain, const RunC
   diagram.siteCount = static_cast<Index>(sites.size());
   diagram.sites.reserve(sites.size() + 12);
   for (std::size_t i = 0; i < sites.size(); ++i) {
-    if (!domain.contains(sites[i])) { // false for NaN too
+    if (!domain.contains(sites[i])) {  // false for NaN too
       throw MethodError("site " + std::to_string(i) + " lies outside the domain or is not finite");
     }
     diagram.sites.push_back(sites[i]);

@@ -20,7 +20,8 @@ constexpr double kProbeSpacing = 0.3;
 constexpr int kMostProbes = 32;
 // A probe's neighborhood is looked at closer when a parabola predicts that |f| falls below this share of the probe's.
 constexpr double kNearMiss = 0.25;
-// Roots keep this share of the edge's length off its ends, so that no point of the clipped diagram coincides with another.
+// Roots keep this share of the edge's length off its ends, so that no point of the clipped diagram coincides with
+// another.
 constexpr double kRootMargin = 1e-6;
 
 struct Edge {
@@ -30,8 +31,8 @@ struct Edge {
 
 // Clearances and, where needed, values of f at the diagram's vertices.
 struct VertexSigns {
-  std::vector<float> clearance;   // rounded towards 0
-  std::vector<double> value;      // kUnknown where the oracle decided and no edge asked
+  std::vector<float> clearance;  // rounded towards 0
+  std::vector<double> value;     // kUnknown where the oracle decided and no edge asked
   std::vector<std::uint8_t> inside;
 };
 
@@ -80,8 +81,8 @@ VertexSigns vertexSigns(const Diagram& diagram, const implicit::ImplicitFunction
     f.clearances(std::span(diagram.vertices).subspan(begin, end - begin), clearances);
     for (std::size_t v = begin; v < end; ++v) signs.clearance[v] = towardsZero(clearances[v - begin]);
   });
-  const std::vector<Index> undecided =
-      collect(count, [&](std::size_t v) { return signs.clearance[v] == 0.0F; }, context);
+  const std::vector<Index> undecided = collect(
+      count, [&](std::size_t v) { return signs.clearance[v] == 0.0F; }, context);
   evaluateAt(undecided, diagram, f, signs.value, context);
   for (std::size_t v = 0; v < count; ++v) {
     signs.inside[v] = signs.clearance[v] < 0.0F || signs.value[v] < 0.0 ? 1 : 0;
@@ -205,7 +206,8 @@ class EdgeProbe {
       if (!crosses || !(vertex > p.t && vertex < r.t) || vertex == q.t) continue;
       const double value = evaluate(vertex);
       if ((value < 0) == q.inside) continue;
-      samples_.insert(samples_.begin() + static_cast<std::ptrdiff_t>(vertex < q.t ? k : k + 1), {vertex, value, value < 0});
+      samples_.insert(samples_.begin() + static_cast<std::ptrdiff_t>(vertex < q.t ? k : k + 1),
+                      {vertex, value, value < 0});
       k += 2;
     }
   }
@@ -249,7 +251,8 @@ struct RootChunk {
 
 double nearestSites(const Diagram& diagram, const std::array<Index, 3>& sites) {
   const auto distance = [&](std::size_t i, std::size_t j) {
-    return (diagram.sites[static_cast<std::size_t>(sites[i])] - diagram.sites[static_cast<std::size_t>(sites[j])]).norm();
+    return (diagram.sites[static_cast<std::size_t>(sites[i])] - diagram.sites[static_cast<std::size_t>(sites[j])])
+        .norm();
   };
   return std::min({distance(0, 1), distance(1, 2), distance(0, 2)});
 }

@@ -59,11 +59,14 @@ class FacetClipper {
       const Index w = loop[(k + 1) % loop.size()];
       if (roots_.inside[static_cast<std::size_t>(v)] != 0) border_.push_back(v);
       if (roots_.touched[static_cast<std::size_t>(v)] == 0) continue;
-      const Index edge = roots_.crossedEdge[4 * static_cast<std::size_t>(v) + static_cast<std::size_t>(diagram_.slotOf(v, w))];
+      const Index edge =
+          roots_.crossedEdge[4 * static_cast<std::size_t>(v) + static_cast<std::size_t>(diagram_.slotOf(v, w))];
       if (edge == kNone) continue;
       found = true;
-      const Index first = diagram_.vertexCount() + static_cast<Index>(roots_.rootOffsets[static_cast<std::size_t>(edge)]);
-      const Index last = diagram_.vertexCount() + static_cast<Index>(roots_.rootOffsets[static_cast<std::size_t>(edge) + 1]);
+      const Index first =
+          diagram_.vertexCount() + static_cast<Index>(roots_.rootOffsets[static_cast<std::size_t>(edge)]);
+      const Index last =
+          diagram_.vertexCount() + static_cast<Index>(roots_.rootOffsets[static_cast<std::size_t>(edge) + 1]);
       if (v < w) {
         for (Index r = first; r < last; ++r) border_.push_back(r);
       } else {

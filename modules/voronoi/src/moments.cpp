@@ -96,7 +96,8 @@ std::vector<SiteMoments> siteMoments(const Diagram& diagram, const ClippedDiagra
         });
         continue;
       }
-      for (; polygon < clipped.polygonFacets.size() && clipped.polygonFacets[polygon] == static_cast<Index>(f); ++polygon) {
+      for (; polygon < clipped.polygonFacets.size() && clipped.polygonFacets[polygon] == static_cast<Index>(f);
+           ++polygon) {
         const PolygonMoments part =
             polygonMoments(clipped.polygon(static_cast<Index>(polygon)), origin, normal,
                            [&](Index v) -> const Vec3& { return clipped.position(diagram, v); });

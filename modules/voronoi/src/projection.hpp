@@ -10,9 +10,9 @@ namespace voroform::voronoi {
 
 struct Ray {
   Vec3 origin;
-  Vec3 direction;    // unit length, pointing out of the solid
-  double outward;    // reach along the direction
-  double inward;     // reach against it
+  Vec3 direction;  // unit length, pointing out of the solid
+  double outward;  // reach along the direction
+  double inward;   // reach against it
 };
 
 // The distance along the ray's direction at which it meets S first, going outward if the origin is inside and inward

@@ -10,8 +10,8 @@
 
 namespace voroform::cvt {
 
-// E = Σᵢ ∫_Ωᵢ ‖x − xᵢ‖² dx over the clipped cells Ωᵢ, and what its gradient 2 mᵢ (xᵢ − cᵢ) needs. The gradient is exact for
-// a fixed domain (Liu et al. 2009); here the caps move with the sites, and a small cap term is left out.
+// E = Σᵢ ∫_Ωᵢ ‖x − xᵢ‖² dx over the clipped cells Ωᵢ, and what its gradient 2 mᵢ (xᵢ − cᵢ) needs. The gradient is exact
+// for a fixed domain (Liu et al. 2009); here the caps move with the sites, and a small cap term is left out.
 struct Evaluation {
   double energy = 0;
   double volume = 0;                          // Σ mᵢ
@@ -20,7 +20,7 @@ struct Evaluation {
   std::vector<voronoi::SiteMoments> moments;  // of each site
   voronoi::ClipSummary clip;
   double secondsDelaunay = 0;
-  double secondsAfterDelaunay = 0;            // flattening, clipping, integrals
+  double secondsAfterDelaunay = 0;  // flattening, clipping, integrals
 };
 
 // The box that sites may roam in: the form's bounds with room around them.

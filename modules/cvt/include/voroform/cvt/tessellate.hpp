@@ -16,10 +16,10 @@ namespace voroform::cvt {
 enum class Optimizer { lbfgs, lloyd };
 
 enum class StopReason {
-  iterations,      // the number of iterations asked for was done
-  converged,       // rms‖cᵢ − xᵢ‖/h fell below the tolerance
-  relativeError,   // (E − E_m)/E_m fell below the one asked for (thesis, Algorithm 1)
-  stalled,         // the line search found no lower energy (implicit domains: the gradient lacks a small cap term)
+  iterations,     // the number of iterations asked for was done
+  converged,      // rms‖cᵢ − xᵢ‖/h fell below the tolerance
+  relativeError,  // (E − E_m)/E_m fell below the one asked for (thesis, Algorithm 1)
+  stalled,        // the line search found no lower energy (implicit domains: the gradient lacks a small cap term)
 };
 const char* toString(StopReason reason);
 
@@ -47,20 +47,20 @@ struct TessellateOptions {
 std::vector<std::string> validate(const TessellateOptions& options);
 
 struct IterationRecord {
-  double energy = 0;         // E, in units⁵
-  double rmsMove = 0;        // rms‖cᵢ − xᵢ‖/h
-  int evaluations = 0;       // of the energy, in all so far
+  double energy = 0;    // E, in units⁵
+  double rmsMove = 0;   // rms‖cᵢ − xᵢ‖/h
+  int evaluations = 0;  // of the energy, in all so far
 };
 
 struct TessellateSummary {
   StopReason stop = StopReason::iterations;
   std::vector<IterationRecord> iterations;  // the first for the initial sites
-  double energy = 0;          // of the returned tessellation's sites, with flat caps
-  double optimalEnergy = 0;   // E_3 = 3·n·(V/n)^(5/3)·G₃
-  double relativeError = 0;   // (energy − optimalEnergy)/optimalEnergy
+  double energy = 0;                        // of the returned tessellation's sites, with flat caps
+  double optimalEnergy = 0;                 // E_3 = 3·n·(V/n)^(5/3)·G₃
+  double relativeError = 0;                 // (energy − optimalEnergy)/optimalEnergy
   int evaluations = 0;
   Index reseededSites = 0;
-  Index emptySites = 0;       // sites without a cell at the end: dropped
+  Index emptySites = 0;  // sites without a cell at the end: dropped
   voronoi::ClipSummary clip;
   double secondsInitial = 0;
   double secondsOptimization = 0;

@@ -31,7 +31,7 @@ struct ClipOptions {
 
 // What was done, and every fallback that was taken.
 struct ClipSummary {
-  Index boundaryCells = 0;       // cells with at least one cap
+  Index boundaryCells = 0;  // cells with at least one cap
   Index roots = 0;
   Index doubleRootEdges = 0;     // diagram edges that S crosses more than once
   Index loops = 0;               // caps
@@ -54,13 +54,14 @@ struct Chord {
   Index point = kNone;  // the extra point between the two (cvt3), or kNone
 };
 
-// A diagram clipped by f. Points carry one numbering: the diagram's vertices first, then `points` in their order (roots,
-// then chord points). Facets have two owners, so what is decided for a facet is the same for both cells.
+// A diagram clipped by f. Points carry one numbering: the diagram's vertices first, then `points` in their order
+// (roots, then chord points). Facets have two owners, so what is decided for a facet is the same for both cells.
 struct ClippedDiagram {
   std::vector<std::uint8_t> inside;  // of each diagram vertex: 1 where f < 0
   std::vector<Vec3> points;
   Index rootCount = 0;
   std::vector<std::array<Index, 3>> rootSites;  // the three sites of each root's edge, ascending
+  std::vector<Index> chordPointFacets;          // the facet of each chord point
 
   // What the solid keeps of each facet.
   enum class FacetState : std::uint8_t { outside, whole, cut };
@@ -110,9 +111,9 @@ mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clippe
 // Mass, first and second moment of each clipped cell about its site, loops closed by flat caps: all that the energy and
 // its gradient need.
 struct SiteMoments {
-  double mass = 0;                   // ∫ dx
-  Vec3 first = Vec3::Zero();         // ∫ (x − site) dx
-  double second = 0;                 // ∫ ‖x − site‖² dx
+  double mass = 0;            // ∫ dx
+  Vec3 first = Vec3::Zero();  // ∫ (x − site) dx
+  double second = 0;          // ∫ ‖x − site‖² dx
 };
 std::vector<SiteMoments> siteMoments(const Diagram& diagram, const ClippedDiagram& clipped, const RunContext& context);
 

@@ -23,8 +23,9 @@ struct Diagram {
 
   // Only vertices of real cells. The order depends on the sites alone.
   std::vector<Vec3> vertices;
-  std::vector<std::array<Index, 4>> vertexSites;      // a tetrahedron of positive orientation
-  std::vector<std::array<Index, 4>> vertexNeighbors;  // across the triangle opposite each site; kNone: not a real cell's
+  std::vector<std::array<Index, 4>> vertexSites;  // a tetrahedron of positive orientation
+  std::vector<std::array<Index, 4>>
+      vertexNeighbors;  // across the triangle opposite each site; kNone: not a real cell's
 
   // Facets between a real site a and a site b > a. The loop is counter-clockwise seen from b.
   std::vector<std::array<Index, 2>> facetSites;
