@@ -12,8 +12,9 @@ namespace {
 std::atomic<std::size_t> largestAllocation = 0;
 }
 
-// All of the program's allocations pass through here, so that the largest is known.
-void* operator new(std::size_t size) {
+// All of the program's allocations pass through here, so that the largest is known. Not inlined: g++ would take the
+// free() behind a new for a mistake.
+[[gnu::noinline]] void* operator new(std::size_t size) {
   std::size_t largest = largestAllocation.load();
   while (size > largest && !largestAllocation.compare_exchange_weak(largest, size)) {
   }
@@ -21,8 +22,8 @@ void* operator new(std::size_t size) {
   if (memory == nullptr) throw std::bad_alloc();
   return memory;
 }
-void operator delete(void* memory) noexcept { std::free(memory); }
-void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory) noexcept { std::free(memory); }
+[[gnu::noinline]] void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace voroform::points::test {
 namespace {

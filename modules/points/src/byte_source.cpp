@@ -27,7 +27,7 @@ std::string quotedToken(std::string_view token) {
 }
 
 ByteSource::ByteSource(std::istream& stream, std::string name, const RunContext& context)
-    : stream_(stream), name_(std::move(name)), context_(context), block_(kBlockBytes) {}
+    : stream_(stream), name_(std::move(name)), context_(context), block_(kFirstBlockBytes) {}
 
 bool ByteSource::fill() {
   context_.throwIfCancelled();
@@ -36,6 +36,7 @@ bool ByteSource::fill() {
     end_ -= begin_;
     begin_ = 0;
   }
+  if (end_ == block_.size()) block_.resize(std::min(2 * block_.size(), kBlockBytes));
   if (end_ == block_.size() || !stream_.good()) return false;
   stream_.read(block_.data() + end_, static_cast<std::streamsize>(block_.size() - end_));
   const auto count = static_cast<std::size_t>(stream_.gcount());
@@ -55,7 +56,7 @@ bool ByteSource::nextLine(std::string_view& line) {
     if (lineEnd != nullptr) break;
     searched = available();
     if (fill()) continue;
-    if (available() == block_.size()) {
+    if (available() == kBlockBytes) {
       ++line_;
       failAtLine("a line of at most " + std::to_string(kBlockBytes) + " bytes", "a longer one");
     }

@@ -42,14 +42,16 @@ class ByteSource {
   [[noreturn]] void failTruncated(std::uint64_t declared, std::string_view things, std::uint64_t complete) const;
 
  private:
-  // Reads more behind what is left; false at the end of the file or if the block is full.
+  static constexpr std::size_t kFirstBlockBytes = std::size_t{1} << 16;
+
+  // Reads more behind what is left; false at the end of the file or if the block is full and cannot grow.
   bool fill();
   std::size_t available() const { return end_ - begin_; }
 
   std::istream& stream_;
   std::string name_;
   const RunContext& context_;
-  std::vector<char> block_;
+  std::vector<char> block_;  // grows up to kBlockBytes when one record needs it
   std::size_t begin_ = 0;
   std::size_t end_ = 0;
   std::uint64_t bytesRead_ = 0;  // from the stream, ahead of what was given out
