@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstdio>
 #include <exception>
+#include <numbers>
 #include <utility>
 
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -62,6 +63,25 @@ FlatPoisson flatten(const Triangulation& triangulation) {
   return flat;
 }
 
+// Surrounds the cloud with refinement points. CGAL decides by the signs on the convex hull where the outside is. A
+// cloud that is evenly spread on a convex surface is its own hull and would get a random answer; besides, the surface
+// would leave through the hull. The points lie on a spherical Fibonacci lattice, beyond the ball of 1.5 radii that CGAL
+// refines.
+void surround(Triangulation& triangulation) {
+  constexpr int kCount = 100;
+  constexpr double kRadii = 1.6;
+  const auto ball = triangulation.bounding_sphere();
+  const double radius = kRadii * std::sqrt(ball.squared_radius());
+  const double turn = std::numbers::pi * (3 - std::sqrt(5.0));
+  for (int i = 0; i < kCount; ++i) {
+    const double z = 1 - (2 * i + 1.0) / kCount;
+    const double ring = radius * std::sqrt(1 - z * z);
+    const Kernel::Vector_3 offset(ring * std::cos(turn * i), ring * std::sin(turn * i), radius * z);
+    triangulation.insert(Triangulation::Point(ball.center() + offset), Triangulation::STEINER,
+                         Triangulation::Cell_handle(), CGAL::Poisson_visitor());
+  }
+}
+
 FlatPoisson solve(const points::PointCloud& cloud, const RunContext& context) {
   std::vector<PointWithNormal> points;
   points.reserve(cloud.positions.size());
@@ -75,6 +95,8 @@ FlatPoisson solve(const points::PointCloud& cloud, const RunContext& context) {
                              CGAL::Second_of_pair_property_map<PointWithNormal>());
     context.report("Poisson", 0.3);
     context.throwIfCancelled();
+    // The function owns a triangulation that is not const; it just has no other way to reach it.
+    surround(const_cast<Triangulation&>(function.tr()));
     if (!function.compute_implicit_function()) {
       throw MethodError(std::string("the Poisson solver failed; ") + kAdvice);
     }
