@@ -59,8 +59,13 @@ void Console::progress(std::string_view stage, double share) {
     if (newStage) std::cerr << stage << '\n';
     return;
   }
+  // A finished stage leaves no bar in the way of what is printed next.
+  if (share >= 1) {
+    clearBar();
+    return;
+  }
   const auto now = Clock::now();
-  if (!newStage && share < 1 && now - barTime_ < kBarInterval) return;
+  if (!newStage && now - barTime_ < kBarInterval) return;
   barTime_ = now;
   const double bounded = std::clamp(share, 0.0, 1.0);
   const auto filled = static_cast<std::size_t>(bounded * kBarWidth);

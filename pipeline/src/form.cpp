@@ -84,6 +84,7 @@ PreparedPoints loadPoints(const fs::path& path, const FormOptions& options, cons
   result.input.bytes = fs::file_size(path, error);
   if (error) throw InputError(path.string() + ": " + error.message());
   result.prepared = points::prepare(std::move(read.cloud), path.string(), options.prepare, recording);
+  context.report("read points", 1);
   return result;
 }
 
