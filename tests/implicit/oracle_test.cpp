@@ -1,5 +1,8 @@
 // The inside oracle against f itself on millions of points, most of them near the surface.
 #include <cmath>
+#include <cstdlib>
+#include <filesystem>
+#include <string>
 #include <vector>
 
 #include <gtest/gtest.h>
@@ -10,6 +13,7 @@
 #include "voroform/implicit/poisson.hpp"
 #include "voroform/implicit/shapes.hpp"
 #include "voroform/implicit/tetrahedral_form.hpp"
+#include "voroform/points/read.hpp"
 
 namespace voroform::implicit {
 namespace {
@@ -96,6 +100,18 @@ TEST(Oracle, NeverContradictsTheFormOfARoughCloud) {
   }
   const ImplicitPtr form = fitPoisson(cloud, test::grownBox(cloud, 0.02), {.gridResolution = 64}, {}).form;
   EXPECT_EQ(judge(*form, kPoints).contradictions, 0U);
+}
+
+// The kitten from the folder that VOROFORM_SCANS names, or a cloud of as many points.
+TEST(Oracle, NeverContradictsTheFormOfAScan) {
+  const char* scans = std::getenv("VOROFORM_SCANS");
+  const points::PointCloud cloud = scans != nullptr
+                                       ? points::readPoints(std::filesystem::path(scans) / "kitten.xyz", {}).cloud
+                                       : test::torusCloud(5210, 12, 1, 0.2);
+  const Box3 region = test::grownBox(cloud, 0.02);
+  const Verdict verdict = judge(*enveloped(fitPoisson(cloud, region, {}, {}).form, region), kPoints);
+  EXPECT_EQ(verdict.contradictions, 0U);
+  EXPECT_GE(share(verdict.spreadDecided, verdict.spread), kDecidedShare);
 }
 
 TEST(Oracle, NeverContradictsAShape) {
