@@ -5,6 +5,7 @@
 #include <fstream>
 #include <iterator>
 #include <string>
+#include <vector>
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -93,6 +94,43 @@ TEST_F(FormFiles, GiveTheSameFormBitForBit) {
     EXPECT_TRUE(test::detail::sameBits(file.form->value(p), form_->value(p)));
     EXPECT_TRUE(test::detail::sameBits(file.form->clearance(p), form_->clearance(p)));
   }
+}
+
+// What any reader of VTK's format does: seek to an array's offset, read its length and its numbers.
+TEST_F(FormFiles, HoldEachArrayWhereTheHeaderSays) {
+  const auto blockOf = [this](const std::string& name) {
+    const std::size_t line = bytes_.find("Name=\"" + name + "\"");
+    const std::string key = "offset=\"";
+    const std::size_t offset = std::stoul(bytes_.substr(bytes_.find(key, line) + key.size()));
+    std::uint64_t length = 0;
+    std::memcpy(&length, &bytes_[dataStart() + offset], sizeof length);
+    return bytes_.substr(dataStart() + offset + sizeof length, length);
+  };
+  const auto numbersOf = [&](const std::string& name, auto zero) {
+    const std::string block = blockOf(name);
+    std::vector<decltype(zero)> numbers(block.size() / sizeof zero);
+    std::memcpy(numbers.data(), block.data(), block.size());
+    return numbers;
+  };
+  const TetrahedralMesh& mesh = form_->mesh();
+  const auto values = numbersOf("f", 0.0);
+  const auto points = numbersOf("points", 0.0);
+  ASSERT_EQ(values.size(), mesh.vertices.size());
+  ASSERT_EQ(points.size(), 3 * mesh.vertices.size());
+  EXPECT_EQ(values[7], mesh.vertices[7].value);
+  EXPECT_EQ(points[3 * 7 + 1], mesh.vertices[7].position.y());
+  EXPECT_EQ(numbersOf("measured", std::uint8_t{0}), mesh.measured);
+  EXPECT_EQ(numbersOf("origin", 0.0)[0], kFrame.origin.x());
+  EXPECT_EQ(numbersOf("grid_resolution", std::int64_t{0}), std::vector<std::int64_t>{40});
+  const std::size_t count = mesh.tetrahedra.size();
+  const auto connectivity = numbersOf("connectivity", Index{0});
+  const auto neighbors = numbersOf("neighbors", Index{0});
+  ASSERT_EQ(connectivity.size(), 4 * count);
+  ASSERT_EQ(neighbors.size(), 4 * count);
+  EXPECT_EQ(connectivity[4 * 5 + 2], mesh.tetrahedra[5].vertices[2]);
+  EXPECT_EQ(neighbors[4 * 5 + 2], mesh.tetrahedra[5].neighbors[2]);
+  EXPECT_EQ(numbersOf("offsets", std::int64_t{0}).back(), static_cast<std::int64_t>(4 * count));
+  EXPECT_EQ(numbersOf("types", std::uint8_t{0}), std::vector<std::uint8_t>(count, 10));
 }
 
 TEST_F(FormFiles, AreTheSameBytesWhenWrittenAgain) {

@@ -93,13 +93,19 @@ std::string header(const Counts& counts) {
   text += "      " + array("UInt64", "checksum", "NumberOfTuples=\"1\" ");
   text += "    </FieldData>\n    <Piece NumberOfPoints=\"" + std::to_string(counts.vertices) + "\" NumberOfCells=\"" +
           std::to_string(counts.tetrahedra) + "\">\n";
-  text += "      <PointData Scalars=\"f\">\n        " + array("Float64", "f", "");
-  text += "        " + array("UInt8", "measured", "") + "      </PointData>\n";
-  text +=
-      "      <CellData>\n        " + array("Int32", "neighbors", "NumberOfComponents=\"4\" ") + "      </CellData>\n";
-  text += "      <Points>\n        " + array("Float64", "points", "NumberOfComponents=\"3\" ") + "      </Points>\n";
-  text += "      <Cells>\n        " + array("Int32", "connectivity", "");
-  text += "        " + array("Int64", "offsets", "") + "        " + array("UInt8", "types", "") + "      </Cells>\n";
+  // One array a statement: each takes the next offset.
+  text += "      <PointData Scalars=\"f\">\n";
+  text += "        " + array("Float64", "f", "");
+  text += "        " + array("UInt8", "measured", "");
+  text += "      </PointData>\n      <CellData>\n";
+  text += "        " + array("Int32", "neighbors", "NumberOfComponents=\"4\" ");
+  text += "      </CellData>\n      <Points>\n";
+  text += "        " + array("Float64", "points", "NumberOfComponents=\"3\" ");
+  text += "      </Points>\n      <Cells>\n";
+  text += "        " + array("Int32", "connectivity", "");
+  text += "        " + array("Int64", "offsets", "");
+  text += "        " + array("UInt8", "types", "");
+  text += "      </Cells>\n";
   text += "    </Piece>\n  </UnstructuredGrid>\n";
   return text.append(kDataStart);
 }
