@@ -13,7 +13,9 @@ namespace voroform::mesh {
 namespace {
 
 using testing::block;
+using ::testing::Contains;
 using testing::cubes;
+using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 using testing::mapped;
 using ::testing::Not;
@@ -186,6 +188,7 @@ TEST(Corruption, VolumesThatDoNotAddUp) {
   const Index removed = faceBetween(complex, 13, 14);
   const Certificate certificate = examine(without(complex, [&](Index f) { return f == removed; }));
   EXPECT_GT(certificate.volumeError, kVolumeConsistency);
+  EXPECT_THAT(certificate.problems, Contains(HasSubstr("volumes add up to")));
   expectRejected(certificate);
 }
 
@@ -395,6 +398,32 @@ TEST(Corruption, CornerThatPiercesItsNeighbors) {
   EXPECT_GT(folded.selfIntersections, 0) << "coplanar neighbors over an edge";
   EXPECT_GT(folded.nonPositiveVolumes, 0);
   expectRejected(folded);
+}
+
+TEST(Corruption, NeighborsFoldedOverTheirEdge) {
+  // All pairs of a tetrahedron's faces share an edge. Flat, with the fourth corner inside of the triangle of the
+  // others: the three small faces lie on the large one.
+  const std::vector<testing::Loop> faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+  const auto tetrahedron = [&](const Vec3& corner) {
+    return examine(testing::joinCells({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, corner}, {faces}));
+  };
+  EXPECT_TRUE(tetrahedron({0.25, 0.25, 1e-12}).valid);
+  EXPECT_EQ(tetrahedron({0.25, 0.25, 0}).selfIntersections, 3);
+  // With the fourth corner beyond a side, only faces over opposite sides of the square stay apart.
+  EXPECT_EQ(tetrahedron({1, 1, 0}).selfIntersections, 4);
+}
+
+TEST(Corruption, NeighborsThatShareAVertexCross) {
+  // A bipyramid: faces of the two halves share an edge or a vertex. The lower apex is lifted through an upper face.
+  const std::vector<testing::Loop> faces = {{0, 1, 3}, {1, 2, 3}, {2, 0, 3}, {1, 0, 4}, {2, 1, 4}, {0, 2, 4}};
+  const auto bipyramid = [&](const Vec3& apex) {
+    return examine(testing::joinCells({{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, 1}, apex}, {faces}));
+  };
+  EXPECT_TRUE(bipyramid({0.25, 0.25, -1}).valid);
+  // The edge from corner 0 to the apex pierces the face (1, 2, 3); both faces on it share one vertex with that face.
+  const Certificate pierced = bipyramid({0.9, 0.9, 1});
+  EXPECT_EQ(pierced.selfIntersections, 2);
+  expectRejected(pierced);
 }
 
 TEST(Corruption, DuplicatedSheet) {
