@@ -37,11 +37,14 @@ struct LoopFrame {
 };
 
 // A cap in the making: its apex, if it is a fan, and its triangles; the apex is numbered kNone. A cap may instead fall
-// into a facet of the cell, onto one of its polygons.
+// into a facet of the cell: onto one of its polygons, or as a patch beside them.
 struct Cap {
   std::optional<Vec3> apex;
   std::vector<Triangle> triangles;
   Index collapsedPolygon = kNone;
+  std::optional<Caps::Patch> patch;
+
+  bool planar() const { return collapsedPolygon != kNone || patch; }
 };
 
 struct CapChunk {
@@ -49,6 +52,7 @@ struct CapChunk {
   std::vector<std::uint32_t> counts;
   std::vector<Triangle> triangles;  // the chunk's own points numbered −1, −2, …
   std::vector<Caps::Collapsed> collapsed;
+  std::vector<Caps::Patch> patches;
   ClipSummary summary;
 };
 
@@ -151,32 +155,42 @@ class CellCapper {
     return kNone;
   }
 
-  // The cap of a loop in a facet's plane: bent into the cell if S bulges there, else fallen into the facet.
+  // The cap of a loop in a facet's plane: a fan if S bulges into the cell there. Else, where the loop goes around a
+  // polygon of the facet, the cell's piece falls into the facet; where it goes around a hole, a patch closes the hole.
   Cap makePlanarCap(std::span<const Index> loop, Index neighbor) {
+    const LoopFrame frame = frameOf(loop);
     if (options_.cap == CapKind::cvt2 || options_.cap == CapKind::cvt3) {
-      const LoopFrame frame = frameOf(loop);
       const std::optional<double> height = projection(frame);
-      if (height && *height > kPlanarHeight * frame.radius) return fan(loop, frame.centroid + *height * frame.normal);
+      if (height && std::abs(*height) > kPlanarHeight * frame.radius) {
+        return fan(loop, frame.centroid + *height * frame.normal);
+      }
     }
     ++chunk_.summary.fallbackCaps;
     Cap cap;
+    const Vec3 across =
+        diagram_.sites[static_cast<std::size_t>(neighbor)] - diagram_.sites[static_cast<std::size_t>(site_)];
+    if (frame.normal.dot(across) > 0) {
+      cap.patch = Caps::Patch{site_, neighbor, {loop.begin(), loop.end()}};
+    } else {
+      cap.collapsedPolygon = polygonAround(loop, neighbor);
+    }
+    return cap;
+  }
+
+  // The polygon, of the facet towards the neighbor, whose border the loop is.
+  Index polygonAround(std::span<const Index> loop, Index neighbor) const {
     for (const Index facet : diagram_.facetsOf(site_)) {
       const auto& [a, b] = diagram_.facetSites[static_cast<std::size_t>(facet)];
       if ((a == site_ ? b : a) != neighbor) continue;
-      auto polygon = std::lower_bound(clipped_.polygonFacets.begin(), clipped_.polygonFacets.end(), facet) -
-                     clipped_.polygonFacets.begin();
-      for (; polygon < clipped_.polygonCount() && clipped_.polygonFacets[static_cast<std::size_t>(polygon)] == facet;
+      const auto first = std::lower_bound(clipped_.polygonFacets.begin(), clipped_.polygonFacets.end(), facet);
+      for (auto polygon = static_cast<Index>(first - clipped_.polygonFacets.begin());
+           polygon < clipped_.polygonCount() && clipped_.polygonFacets[static_cast<std::size_t>(polygon)] == facet;
            ++polygon) {
-        const auto points = clipped_.polygon(static_cast<Index>(polygon));
-        if (std::find(points.begin(), points.end(), loop[0]) != points.end()) {
-          cap.collapsedPolygon = static_cast<Index>(polygon);
-        }
+        const auto points = clipped_.polygon(polygon);
+        if (std::find(points.begin(), points.end(), loop[0]) != points.end()) return polygon;
       }
     }
-    if (cap.collapsedPolygon == kNone) {
-      throw MethodError("the planar loop of site " + std::to_string(site_) + " bounds no polygon");
-    }
-    return cap;
+    throw MethodError("the planar loop of site " + std::to_string(site_) + " bounds no polygon");
   }
 
   Vec3 projected(const LoopFrame& frame) {
@@ -242,7 +256,7 @@ class CellCapper {
     for (Index l = first; l < last; ++l) frames.push_back(frameOf(clipped_.loop(l)));
     const std::size_t heights = std::size(kOtherHeights);
     const auto fanAt = [&](std::size_t cap, double height) {
-      if (asked[cap].collapsedPolygon != kNone) return asked[cap];
+      if (asked[cap].planar()) return asked[cap];
       const LoopFrame& frame = frames[cap];
       const double reach =
           (1 - kBorderShare) * reachInCell(frame.centroid, height < 0 ? Vec3(-frame.normal) : frame.normal);
@@ -268,6 +282,7 @@ class CellCapper {
 
   void emit(const Cap& cap) {
     if (cap.collapsedPolygon != kNone) chunk_.collapsed.push_back({cap.collapsedPolygon, site_});
+    if (cap.patch) chunk_.patches.push_back(*cap.patch);
     if (cap.apex) chunk_.points.push_back(*cap.apex);
     const Index apex = -static_cast<Index>(chunk_.points.size());
     for (Triangle triangle : cap.triangles) {
@@ -317,6 +332,7 @@ Caps buildCaps(const Diagram& diagram, ClippedDiagram& clipped, const implicit::
     }
     caps.points.insert(caps.points.end(), chunk.points.begin(), chunk.points.end());
     caps.collapsed.insert(caps.collapsed.end(), chunk.collapsed.begin(), chunk.collapsed.end());
+    caps.patches.insert(caps.patches.end(), chunk.patches.begin(), chunk.patches.end());
     caps.triangleOffsets.insert(caps.triangleOffsets.end(), chunk.counts.begin(), chunk.counts.end());
     clipped.summary.capPoints += chunk.summary.capPoints;
     clipped.summary.unprojectedPoints += chunk.summary.unprojectedPoints;

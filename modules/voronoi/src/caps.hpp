@@ -22,6 +22,15 @@ struct Caps {
     Index site;  // whose cell gives it up
   };
   std::vector<Collapsed> collapsed;
+
+  // Loops around a hole in one of their cell's facets whose caps do not leave its plane. If the cell on the other side
+  // has the same patch, the hole is none: the patch becomes a face between the two.
+  struct Patch {
+    Index site;
+    Index neighbor;
+    std::vector<Index> loop;  // counter-clockwise seen from the neighbor
+  };
+  std::vector<Patch> patches;
 };
 
 // Adds to the clipped diagram's summary.

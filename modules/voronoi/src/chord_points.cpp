@@ -145,6 +145,15 @@ std::vector<FacetRange> facetRanges(const ClippedDiagram& clipped) {
   return ranges;
 }
 
+// Chords along a diagram edge (S leaves the solid and enters it again on the same edge) stay straight: their facet is
+// not the only one they belong to.
+bool onOneEdge(const ClippedDiagram& clipped, const Chord& chord) {
+  const auto root = [&](Index point) {
+    return clipped.rootSites[static_cast<std::size_t>(point) - clipped.inside.size()];
+  };
+  return root(chord.leave) == root(chord.enter);
+}
+
 // Calls visit(point) for the polygon's points, and chordPoint(chord's number) between the ends of each of the facet's
 // chords.
 template <class Visit, class ChordPoint>
@@ -155,7 +164,10 @@ void walkPolygon(const ClippedDiagram& clipped, const FacetRange& range, std::si
     visit(polygon[k]);
     const Index next = polygon[(k + 1) % polygon.size()];
     for (std::size_t c = range.chordBegin; c < range.chordEnd; ++c) {
-      if (clipped.chords[c].leave == polygon[k] && clipped.chords[c].enter == next) chordPoint(c);
+      if (clipped.chords[c].leave == polygon[k] && clipped.chords[c].enter == next &&
+          !onOneEdge(clipped, clipped.chords[c])) {
+        chordPoint(c);
+      }
     }
   }
 }

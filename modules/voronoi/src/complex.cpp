@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <map>
 
 #include "caps.hpp"
 #include "voroform/core/parallel.hpp"
@@ -38,6 +39,37 @@ Index number(std::vector<Index>& marked) {
   return next;
 }
 
+Vec3 across(const Diagram& diagram, Index from, Index to) {
+  return diagram.sites[static_cast<std::size_t>(to)] - diagram.sites[static_cast<std::size_t>(from)];
+}
+
+// Adds a boundary polygon of a cell, counter-clockwise seen against the normal, as triangles: a fan about its centroid,
+// or, if chord points have made it too reentrant for that, ears.
+void addPlanarBoundary(mesh::PolyhedralComplex& complex, std::span<const Index> loop, const Vec3& normal, Index cell) {
+  std::vector<Vec3> corners;
+  Vec3 centroid = Vec3::Zero();
+  for (const Index vertex : loop) {
+    corners.push_back(complex.vertices[static_cast<std::size_t>(vertex)]);
+    centroid += corners.back() / static_cast<double>(loop.size());
+  }
+  bool starShaped = true;
+  for (std::size_t k = 0; k < loop.size(); ++k) {
+    const Vec3& next = corners[(k + 1) % loop.size()];
+    if (!(normal.dot((corners[k] - centroid).cross(next - centroid)) > 0)) starShaped = false;
+  }
+  if (starShaped) {
+    const auto center = static_cast<Index>(complex.vertices.size());
+    complex.vertices.push_back(centroid);
+    for (std::size_t k = 0; k < loop.size(); ++k) {
+      complex.addFace(std::array{center, loop[k], loop[(k + 1) % loop.size()]}, cell, kNone);
+    }
+    return;
+  }
+  for (const auto& [i, j, k] : cutEars(corners, normal)) {
+    complex.addFace(std::array{loop[i], loop[j], loop[k]}, cell, kNone);
+  }
+}
+
 }  // namespace
 
 mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clipped, const implicit::ImplicitFunction& f,
@@ -62,6 +94,9 @@ mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clippe
     ++faceCount;
     cornerCount += polygon.size();
   });
+  for (const Caps::Patch& patch : caps.patches) {
+    for (const Index point : patch.loop) vertexOf[static_cast<std::size_t>(point)] = 1;
+  }
   for (const auto& triangle : caps.triangles) {
     for (const Index point : triangle) vertexOf[static_cast<std::size_t>(point)] = 1;
   }
@@ -89,20 +124,34 @@ mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clippe
       complex.addFace(loop, cellOf[static_cast<std::size_t>(owners[0])], cellOf[static_cast<std::size_t>(owners[1])]);
       return;
     }
-    // Boundary of the one owner left; as triangles, since chord points may have made the polygon reentrant.
+    // Boundary of the one owner left.
     const auto& [a, b] = diagram.facetSites[static_cast<std::size_t>(facet)];
-    Vec3 normal = diagram.sites[static_cast<std::size_t>(b)] - diagram.sites[static_cast<std::size_t>(a)];
-    const Index owner = owners[0] != kNone ? owners[0] : owners[1];
-    if (owners[0] == kNone) {
-      std::reverse(loop.begin(), loop.end());
-      normal = -normal;
-    }
-    std::vector<Vec3> corners;
-    for (const Index vertex : loop) corners.push_back(complex.vertices[static_cast<std::size_t>(vertex)]);
-    for (const auto& [i, j, k] : cutEars(corners, normal)) {
-      complex.addFace(std::array{loop[i], loop[j], loop[k]}, cellOf[static_cast<std::size_t>(owner)], kNone);
-    }
+    const bool second = owners[0] == kNone;
+    if (second) std::reverse(loop.begin(), loop.end());
+    addPlanarBoundary(complex, loop, across(diagram, second ? b : a, second ? a : b),
+                      cellOf[static_cast<std::size_t>(second ? b : a)]);
   });
+
+  std::map<std::array<Index, 3>, const Caps::Patch*> open;  // by site, neighbor, lowest point
+  for (const Caps::Patch& patch : caps.patches) {
+    const Index lowest = *std::min_element(patch.loop.begin(), patch.loop.end());
+    const auto opposite = open.find({patch.neighbor, patch.site, lowest});
+    if (opposite == open.end()) {
+      open[{patch.site, patch.neighbor, lowest}] = &patch;
+      continue;
+    }
+    open.erase(opposite);
+    loop.clear();
+    for (const Index point : patch.loop) loop.push_back(vertexOf[static_cast<std::size_t>(point)]);
+    complex.addFace(loop, cellOf[static_cast<std::size_t>(patch.site)],
+                    cellOf[static_cast<std::size_t>(patch.neighbor)]);
+  }
+  for (const auto& [key, patch] : open) {
+    loop.clear();
+    for (const Index point : patch->loop) loop.push_back(vertexOf[static_cast<std::size_t>(point)]);
+    addPlanarBoundary(complex, loop, across(diagram, patch->site, patch->neighbor),
+                      cellOf[static_cast<std::size_t>(patch->site)]);
+  }
 
   std::vector<mesh::FaceTag> tags(caps.triangles.size());
   parallelFor(context, tags.size(), 1024, [&](std::size_t begin, std::size_t end) {

@@ -101,10 +101,12 @@ class FacetClipper {
     }
   }
 
-  // Whether the stretches belong together through the facet's middle. One stretch does; several do if f is negative at
-  // the mean of their roots (the saddle's sign, as in Marching Cubes' ambiguous faces).
+  // Whether the stretches belong together through the facet's middle. One stretch does. Where all roots lie on one edge
+  // the middle is inside if one of the facet's vertices is. Else f decides at the mean of the
+  // roots (the saddle's sign, as in Marching Cubes' ambiguous faces).
   bool joined(PolygonChunk& chunk) const {
     if (stretches_.size() == 1) return true;
+    if (rootsOnOneEdge()) return std::any_of(border_.begin(), border_.end(), [&](Index p) { return !isRoot(p); });
     Vec3 mean = Vec3::Zero();
     for (const Stretch& stretch : stretches_) {
       mean += position(stretch.points.front()) + position(stretch.points.back());
@@ -112,6 +114,17 @@ class FacetClipper {
     mean /= 2.0 * static_cast<double>(stretches_.size());
     ++chunk.evaluations;
     return f_.value(mean) < 0;
+  }
+
+  bool rootsOnOneEdge() const {
+    const std::array<Index, 3>* first = nullptr;
+    for (const Index point : border_) {
+      if (!isRoot(point)) continue;
+      const auto& sites = clipped_.rootSites[static_cast<std::size_t>(point - diagram_.vertexCount())];
+      if (first != nullptr && sites != *first) return false;
+      first = &sites;
+    }
+    return true;
   }
 
   const Vec3& position(Index point) const { return clipped_.position(diagram_, point); }
