@@ -25,6 +25,9 @@ constexpr double kFlatTetrahedron = 1e-9;
 // from i to j, counter-clockwise seen from j.
 constexpr int kNextAroundEdge[4][4] = {{-1, 2, 3, 1}, {3, -1, 0, 2}, {1, 3, -1, 0}, {2, 0, 1, -1}};
 
+// kOtherTwo[i][j]: the lower of the two local indices that are neither i nor j.
+constexpr std::size_t kOtherTwo[4][4] = {{0, 2, 1, 1}, {2, 0, 0, 0}, {1, 0, 0, 0}, {1, 0, 0, 0}};
+
 void appendGhosts(std::vector<Vec3>& sites, const Box3& domain) {
   const Vec3 center = domain.center();
   const double radius = 0.5 * domain.diagonal().norm();
@@ -96,10 +99,14 @@ FacetChunk collectFacets(const Diagram& diagram, std::size_t begin, std::size_t 
   chunk.vertices.reserve((end - begin) * 6);
   for (std::size_t v = begin; v < end; ++v) {
     const auto& sites = diagram.vertexSites[v];
+    const auto& neighbors = diagram.vertexNeighbors[v];
     for (std::size_t i = 0; i < 4; ++i) {
       for (std::size_t j = i + 1; j < 4; ++j) {
         const auto [a, b] = std::minmax(sites[i], sites[j]);
         if (!diagram.isReal(a)) continue;
+        // Both neighbors about the edge are at hand: most loops that a lower vertex takes are known without a walk.
+        const std::size_t k = kOtherTwo[i][j];
+        if (neighbors[k] < static_cast<Index>(v) || neighbors[6 - i - j - k] < static_cast<Index>(v)) continue;
         const std::size_t before = chunk.vertices.size();
         if (!collectLoop(diagram, static_cast<Index>(v), a, b, chunk.vertices)) continue;
         chunk.sites.push_back({a, b});
