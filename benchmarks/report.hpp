@@ -16,8 +16,9 @@ inline void report(const std::string& point, const std::string& figure, double v
 
 // A figure that has to lie between two bounds.
 inline void report(const std::string& point, const std::string& figure, double value, double low, double high) {
-  std::cout << nlohmann::json{{"point", point}, {"figure", figure}, {"value", value}, {"low", low}, {"bound", high}}.dump()
-            << std::endl;
+  std::cout
+      << nlohmann::json{{"point", point}, {"figure", figure}, {"value", value}, {"low", low}, {"bound", high}}.dump()
+      << std::endl;
 }
 
 // A figure without a bound.

@@ -73,7 +73,8 @@ void measure(const Bounds& bounds, const RunContext& context) {
         benchmarks::report("3", std::string(bounds.shape) + " " + std::to_string(sites) + " mc Dmean/h",
                            marchingCubes / spacings.back());
       }
-      const std::string name = std::string(bounds.shape) + " " + std::to_string(sites) + " " + kCapNames[cap] + " Dmean/mc";
+      const std::string name =
+          std::string(bounds.shape) + " " + std::to_string(sites) + " " + kCapNames[cap] + " Dmean/mc";
       const double ratio = distances.mean / marchingCubes;
       sites == 14474 ? benchmarks::report("3", name, ratio, bounds.ratios[cap]) : benchmarks::report("3", name, ratio);
     }
@@ -88,9 +89,8 @@ void measure(const Bounds& bounds, const RunContext& context) {
 
 int main(int argc, char** argv) {
   const RunContext context;
-  const std::array<Bounds, 3> shapes = {{{"torus", {0.65, 0.48, 0.30}},
-                                         {"ellipsoid", {0.88, 0.48, 0.30}},
-                                         {"bumpy-sphere", {0.88, 0.48, 0.30}}}};
+  const std::array<Bounds, 3> shapes = {
+      {{"torus", {0.65, 0.48, 0.30}}, {"ellipsoid", {0.88, 0.48, 0.30}}, {"bumpy-sphere", {0.88, 0.48, 0.30}}}};
   for (const Bounds& bounds : shapes) {
     if (argc < 2 || std::string(argv[1]) == bounds.shape) measure(bounds, context);
   }

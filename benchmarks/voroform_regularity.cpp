@@ -45,7 +45,8 @@ void measureAfterIterations(const std::string& name, const implicit::ImplicitFun
   benchmarks::report("4", name + " 14474 sites, 10 iterations, mean G", ten.mean, 0.0814);
   benchmarks::report("4", name + " 14474 sites, 10 iterations, max G", ten.max, 0.10);
   options.iterations = 50;
-  benchmarks::report("4", name + " 14474 sites, 50 iterations, mean G", regularityAfter(f, options, context).mean, 0.0801);
+  benchmarks::report("4", name + " 14474 sites, 50 iterations, mean G", regularityAfter(f, options, context).mean,
+                     0.0801);
 }
 
 }  // namespace

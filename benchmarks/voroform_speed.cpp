@@ -46,10 +46,10 @@ std::vector<Vec3> relaxedSites(const implicit::ImplicitFunction& f, Index count,
 }
 
 struct Timing {
-  double ratio = 0;        // evaluation on two threads over the yardstick, median of the pairs
-  double evaluation = 0;   // seconds
-  double delaunay = 0;     // seconds, of the yardstick
-  double twoOverOne = 0;   // everything after Delaunay
+  double ratio = 0;       // evaluation on two threads over the yardstick, median of the pairs
+  double evaluation = 0;  // seconds
+  double delaunay = 0;    // seconds, of the yardstick
+  double twoOverOne = 0;  // everything after Delaunay
 };
 
 // Repetitions alternate the yardstick, two threads and one; the sites move by 0.1 h between them.

@@ -59,9 +59,8 @@ void parallelFor(const RunContext& context, std::size_t count, std::size_t grain
 #else
   // An arena of its own for every number of threads asked for; oneTBB reuses the same worker threads for all of them.
   oneapi::tbb::task_arena arena(threads);
-  arena.execute([&] {
-    oneapi::tbb::parallel_for(std::size_t{0}, chunks, runChunk, oneapi::tbb::simple_partitioner{});
-  });
+  arena.execute(
+      [&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, runChunk, oneapi::tbb::simple_partitioner{}); });
 #endif
 }
 
