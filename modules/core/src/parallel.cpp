@@ -8,6 +8,7 @@
 #include <exception>
 #include <mutex>
 #else
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 #endif
@@ -58,7 +59,8 @@ void parallelFor(const RunContext& context, std::size_t count, std::size_t grain
   if (failure) std::rethrow_exception(failure);
 #else
   // An arena of its own for every number of threads asked for; oneTBB reuses the same worker threads for all of them.
-  oneapi::tbb::task_arena arena(threads);
+  // It has no more of them than the machine has cores, and complains on stderr if asked for more.
+  oneapi::tbb::task_arena arena(std::min(threads, oneapi::tbb::info::default_concurrency()));
   arena.execute(
       [&] { oneapi::tbb::parallel_for(std::size_t{0}, chunks, runChunk, oneapi::tbb::simple_partitioner{}); });
 #endif

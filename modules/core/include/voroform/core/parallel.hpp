@@ -23,9 +23,8 @@ T parallelReduce(const RunContext& context, std::size_t count, std::size_t grain
                  const Join& join) {
   const std::size_t chunks = (count + grain - 1) / grain;
   std::vector<T> partial(chunks, initial);
-  parallelFor(context, count, grain, [&](std::size_t begin, std::size_t end) {
-    partial[begin / grain] = body(begin, end, initial);
-  });
+  parallelFor(context, count, grain,
+              [&](std::size_t begin, std::size_t end) { partial[begin / grain] = body(begin, end, initial); });
   T result = initial;
   for (const T& part : partial) result = join(result, part);
   return result;

@@ -1,4 +1,5 @@
-// Random and quasi-random numbers that depend on (seed, stream, index) alone, never on threads or on the order of calls.
+// Random and quasi-random numbers that depend on (seed, stream, index) alone, never on threads or on the order of
+// calls.
 #pragma once
 
 #include <cstdint>
@@ -8,7 +9,17 @@
 namespace voroform {
 
 // Streams keep the uses of one seed apart.
-enum class RandomStream : std::uint64_t { sites, ghosts, validation, volume, reseed, orientation, sampling, test };
+enum class RandomStream : std::uint64_t {
+  sites,
+  ghosts,
+  validation,
+  volume,
+  reseed,
+  orientation,
+  sampling,
+  insertion,
+  test
+};
 
 // 64 random bits for a key: SplitMix64's finalizer over the mixed key.
 std::uint64_t randomBits(std::uint64_t seed, RandomStream stream, std::uint64_t index);

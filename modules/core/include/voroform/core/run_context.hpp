@@ -18,7 +18,8 @@ struct RunContext {
   std::function<void(LogLevel level, std::string_view message)> log;
   // Set to true by the caller to stop the run; the running stage then throws Cancelled.
   const std::atomic<bool>* cancelled = nullptr;
-  // Most threads to use; 0 means as many as the machine has. Results do not depend on it.
+  // Most threads to use; 0 means as many as the machine has, and more than these are not used. Results do not depend on
+  // it.
   int threads = 0;
 
   void report(std::string_view stage, double share) const;

@@ -1,9 +1,9 @@
 // voroform: basic types and the conventions that every module keeps.
 //
-// Sign: an implicit function is negative inside the solid, zero on its surface, positive outside; f = 0 counts as outside.
-// Orientation: a face's loop runs counter-clockwise seen from the cell ahead of it, so its normal points from the cell
-// behind to the cell ahead; a boundary face's normal points out of the solid.
-// Coordinates are doubles in the input's units, shifted by an origin that is stored with the data (see Frame).
+// Sign: an implicit function is negative inside the solid, zero on its surface, positive outside; f = 0 counts as
+// outside. Orientation: a face's loop runs counter-clockwise seen from the cell ahead of it, so its normal points from
+// the cell behind to the cell ahead; a boundary face's normal points out of the solid. Coordinates are doubles in the
+// input's units, shifted by an origin that is stored with the data (see Frame).
 #pragma once
 
 #include <cstdint>

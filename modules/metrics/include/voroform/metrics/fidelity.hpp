@@ -15,21 +15,22 @@ struct FidelityOptions {
   std::int64_t volumeSamples = 2'000'000;
   // About how many of them, evenly chosen, are looked up in the boundary for missedShare, if they are inside.
   std::int64_t missedSamples = 400'000;
-  // Points of the cloud, in the complex's local coordinates, and their spacing, for unsupportedShare; empty: there is no cloud.
+  // Points of the cloud, in the complex's local coordinates, and their spacing, for unsupportedShare; empty: there is
+  // no cloud.
   std::span<const Vec3> points = {};
   double spacing = 0;
   std::uint64_t seed = 0;
 };
 
 struct Fidelity {
-  double sampledVolume = 0;           // of {f < 0}
-  double sampledVolumeSigma = 0;      // its standard deviation, if the points were random
-  double volumeError = 0;             // |enclosed − sampled| / sampled; 1 if no sample is inside
-  std::int64_t missedSamples = 0;     // inside points that were looked up in the boundary
-  double missedShare = 0;             // share of these that lie outside the boundary
-  Index disconnectedCells = 0;        // cells whose faces are not all connected across edges
-  double envelopeShare = 0;           // share of the boundary's area on the envelope
-  double unsupportedShare = 0;        // share of the boundary's area farther than four spacings from any point
+  double sampledVolume = 0;        // of {f < 0}
+  double sampledVolumeSigma = 0;   // its standard deviation, if the points were random
+  double volumeError = 0;          // |enclosed − sampled| / sampled; 1 if no sample is inside
+  std::int64_t missedSamples = 0;  // inside points that were looked up in the boundary
+  double missedShare = 0;          // share of these that lie outside the boundary
+  Index disconnectedCells = 0;     // cells whose faces are not all connected across edges
+  double envelopeShare = 0;        // share of the boundary's area on the envelope
+  double unsupportedShare = 0;     // share of the boundary's area farther than four spacings from any point
 };
 
 // Deterministic for any number of threads. Points are drawn in f.bounds(); the complex and f share one local frame.

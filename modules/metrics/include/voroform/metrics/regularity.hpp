@@ -20,13 +20,13 @@ struct RegularityStatistics {
   double max = 0;
   double mean = 0;
   double median = 0;
-  double rmse = 0;                   // root mean square of G − G₃
-  std::vector<Index> histogram;      // 50 bins over [0.078, 0.128], the last holds all above
+  double rmse = 0;               // root mean square of G − G₃
+  std::vector<Index> histogram;  // 50 bins over [0.078, 0.128], the last holds all above
 };
 
 struct Regularity {
   RegularityStatistics all;
-  RegularityStatistics interior;   // cells without a boundary face
+  RegularityStatistics interior;  // cells without a boundary face
   RegularityStatistics boundary;
 };
 
