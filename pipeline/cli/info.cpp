@@ -12,7 +12,7 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
-#include "voroform/core/error.hpp"
+#include "voroform/core/input_file.hpp"
 #include "voroform/implicit/form_file.hpp"
 #include "voroform/implicit/tetrahedral_form.hpp"
 #include "voroform/mesh/formats.hpp"
@@ -86,7 +86,7 @@ Json describePoints(const fs::path& path, const RunContext& context) {
 
 // Both kinds of .vtu are ours; the array that only cells have stands in the header.
 bool holdsCells(const fs::path& path) {
-  std::ifstream stream(path, std::ios::binary);
+  std::ifstream stream = openInputFile(path);
   std::string head(1 << 16, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(stream.gcount()));
@@ -115,9 +115,8 @@ void printText(const Json& json) {
 
 int runInfo(const Settings& settings, const CLI::App&, const RunContext& context) {
   const fs::path path = settings.input;
+  requireRegularFile(path);
   std::error_code error;
-  if (!fs::exists(path, error)) throw InputError(path.string() + ": no such file");
-  if (fs::is_directory(path, error)) throw InputError(path.string() + ": expected a file, found a folder");
   Json json = {{"file", path.string()}, {"bytes", fs::file_size(path, error)}};
   Json content;
   if (path.extension() != ".vtu") {

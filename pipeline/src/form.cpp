@@ -7,6 +7,7 @@
 
 #include "records.hpp"
 #include "voroform/core/error.hpp"
+#include "voroform/core/input_file.hpp"
 #include "voroform/implicit/form_file.hpp"
 #include "voroform/implicit/shapes.hpp"
 #include "voroform/implicit/tetrahedral_form.hpp"
@@ -27,13 +28,6 @@ std::string lowerExtension(const fs::path& path) {
   std::transform(extension.begin(), extension.end(), extension.begin(),
                  [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
   return extension;
-}
-
-void requireFile(const fs::path& path) {
-  std::error_code error;
-  const fs::file_status status = fs::status(path, error);
-  if (!fs::exists(status)) throw InputError(path.string() + ": no such file");
-  if (fs::is_directory(status)) throw InputError(path.string() + ": expected a file, found a folder");
 }
 
 Box3 grown(const Box3& box, double margin) {
@@ -62,7 +56,7 @@ std::vector<std::string> validate(const FormOptions& options) {
 
 PreparedPoints loadPoints(const fs::path& path, const FormOptions& options, const RunContext& context) {
   throwIfInvalid(options);
-  requireFile(path);
+  requireRegularFile(path);
   PreparedPoints result;
   const RunContext recording = recordWarnings(context, result.warnings);
   if (options.inputKind == InputKind::mesh) {
@@ -117,7 +111,7 @@ Form formFromPoints(const fs::path& path, const FormOptions& options, const RunC
 }
 
 Form formFromFile(const fs::path& path, const RunContext& context) {
-  requireFile(path);
+  requireRegularFile(path);
   const Stopwatch watch;
   Form form;
   form.source = path;

@@ -1,10 +1,9 @@
 #include "records.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <fstream>
 
 #include "voroform/core/error.hpp"
+#include "voroform/core/input_file.hpp"
 #include "voroform/core/output_file.hpp"
 
 namespace voroform::pipeline {
@@ -168,9 +167,7 @@ FormRecord formRecord(const Json& json, const std::string& name) {
 }
 
 Json readJson(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path.string() + ": cannot be opened: " + std::strerror(errno));
+  std::ifstream stream = openInputFile(path);
   try {
     return Json::parse(stream);
   } catch (const Json::exception& error) {

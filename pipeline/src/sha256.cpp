@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "voroform/core/error.hpp"
+#include "voroform/core/input_file.hpp"
 
 namespace voroform::pipeline {
 
@@ -88,9 +89,7 @@ std::string Sha256::finish() {
 }
 
 std::string sha256OfFile(const std::filesystem::path& path) {
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(path.string() + ": cannot be opened: " + std::strerror(errno));
+  std::ifstream stream = openInputFile(path);
   Sha256 hash;
   std::vector<char> buffer(1 << 20);
   while (stream) {

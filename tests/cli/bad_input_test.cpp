@@ -2,6 +2,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <sys/stat.h>
+
 #include <bit>
 #include <cstring>
 
@@ -55,6 +57,15 @@ TEST_F(BadInput, MissingFile) {
 TEST_F(BadInput, FolderInPlaceOfAFile) {
   const std::string path = folder_ / "";
   EXPECT_THAT(refused(path), AllOf(HasSubstr(path), HasSubstr("folder")));
+}
+
+// A pipe could be read once only, and would be waited for.
+TEST_F(BadInput, PipeInPlaceOfAFile) {
+  const std::string path = folder_ / "pipe.xyz";
+  ASSERT_EQ(::mkfifo(path.c_str(), 0600), 0);
+  EXPECT_THAT(refused(path), AllOf(HasSubstr(path), HasSubstr("regular file")));
+  const Outcome info = run({"info", path});
+  EXPECT_EQ(info.exitCode, 3);
 }
 
 TEST_F(BadInput, EmptyFile) {

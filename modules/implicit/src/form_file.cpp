@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cerrno>
 #include <charconv>
 #include <cstring>
 #include <fstream>
@@ -14,6 +13,7 @@
 #include <vector>
 
 #include "voroform/core/error.hpp"
+#include "voroform/core/input_file.hpp"
 #include "voroform/core/output_file.hpp"
 
 namespace voroform::implicit {
@@ -172,13 +172,10 @@ Content contentOf(const TetrahedralForm& form, const Frame& frame, const Counts&
 // A form's file while it is read; every complaint names it.
 class FormReader {
  public:
-  explicit FormReader(const fs::path& path) : path_(path) {
+  explicit FormReader(const fs::path& path) : path_(path), stream_(openInputFile(path)) {
     std::error_code error;
     size_ = fs::file_size(path, error);
-    if (error) throw InputError(path.string() + ": " + error.message());
-    errno = 0;
-    stream_.open(path, std::ios::binary);
-    if (!stream_) throw InputError(path.string() + ": cannot be opened: " + std::strerror(errno));
+    if (error) fail(error.message());
   }
 
   [[noreturn]] void fail(const std::string& what) const { throw InputError(path_.string() + ": " + what); }
@@ -257,8 +254,8 @@ class FormReader {
   }
 
   fs::path path_;
-  std::uint64_t size_ = 0;
   std::ifstream stream_;
+  std::uint64_t size_ = 0;
 };
 
 TetrahedralMesh meshOf(const Content& content, const Counts& counts, const FormReader& reader) {

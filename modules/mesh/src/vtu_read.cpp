@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voroform/core/error.hpp"
+#include "voroform/core/input_file.hpp"
 #include "voroform/mesh/formats.hpp"
 #include "vtu_header.hpp"
 #include "vtu_layout.hpp"
@@ -27,12 +28,8 @@ struct Block {
 
 class VtuFile {
  public:
-  explicit VtuFile(const std::filesystem::path& path) : name_(path.string()) {
+  explicit VtuFile(const std::filesystem::path& path) : name_(path.string()), stream_(openInputFile(path)) {
     std::error_code error;
-    if (!std::filesystem::exists(path, error)) fail("no such file");
-    if (!std::filesystem::is_regular_file(path, error)) fail("not a regular file");
-    stream_.open(path, std::ios::binary);
-    if (!stream_) fail("cannot be opened");
     size_ = std::filesystem::file_size(path, error);
     if (error) fail("its size cannot be found: " + error.message());
     std::string head(std::min<std::uint64_t>(size_, kMaxHeaderBytes), '\0');

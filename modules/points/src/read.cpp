@@ -1,13 +1,11 @@
 #include "voroform/points/read.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <fstream>
-#include <system_error>
 
 #include "byte_source.hpp"
 #include "readers.hpp"
 #include "voroform/core/error.hpp"
+#include "voroform/core/input_file.hpp"
 
 namespace voroform::points {
 namespace {
@@ -42,15 +40,10 @@ ReadResult readPoints(std::istream& stream, const std::string& format, const std
 
 ReadResult readPoints(const std::filesystem::path& path, const RunContext& context) {
   const std::string name = path.string();
-  std::error_code error;
-  const std::filesystem::file_status status = std::filesystem::status(path, error);
-  if (error) throw InputError(name + ": cannot be read: " + error.message());
-  if (std::filesystem::is_directory(status)) throw InputError(name + ": expected a file, found a folder");
+  requireRegularFile(path);
   const std::string format = lowerCaseExtension(path);
   readerOf(format, name);  // a wrong extension is told before a file that cannot be opened
-  errno = 0;
-  std::ifstream stream(path, std::ios::binary);
-  if (!stream) throw InputError(name + ": cannot be opened: " + std::strerror(errno));
+  std::ifstream stream = openInputFile(path);
   return readPoints(stream, format, name, context);
 }
 
