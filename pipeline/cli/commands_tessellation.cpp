@@ -38,7 +38,7 @@ int runReconstruct(const Settings& settings, const CLI::App&, const RunContext& 
     throw UsageError(settings.input + ": reconstruct starts from points; use tessellate for a form");
   }
   pipeline::checkOutputFolder(settings.output);
-  pipeline::checkMemory(writeOptions(settings).tessellate);
+  cvt::requireMemory(writeOptions(settings).tessellate);
   return makeResults(pipeline::formFromInput(settings.input, formOptions(settings), context), settings, context);
 }
 
@@ -52,7 +52,7 @@ int runTessellate(const Settings& settings, const CLI::App& command, const RunCo
     }
   }
   pipeline::checkOutputFolder(settings.output);
-  pipeline::checkMemory(writeOptions(settings).tessellate);
+  cvt::requireMemory(writeOptions(settings).tessellate);
   return makeResults(pipeline::formFromInput(settings.input, formOptions(settings), context), settings, context);
 }
 

@@ -50,8 +50,7 @@ void printForm(std::ostream& out, const pipeline::FormRecord& record) {
 }
 
 void printTessellation(std::ostream& out, const cvt::TessellateSummary& summary) {
-  const std::size_t iterations = summary.iterations.empty() ? 0 : summary.iterations.size() - 1;
-  out << "optimization: " << plural(iterations, "iteration") << ", "
+  out << "optimization: " << plural(static_cast<std::uint64_t>(summary.iterationsDone), "iteration") << ", "
       << plural(static_cast<std::uint64_t>(summary.evaluations), "evaluation") << ", ended by "
       << cvt::toString(summary.stop) << "; energy " << percent(summary.relativeError) << " above its optimum\n";
 }

@@ -31,10 +31,13 @@ Json energyJson(const cvt::TessellateSummary& summary) {
   for (const cvt::IterationRecord& record : summary.iterations) {
     steps.push_back({{"value", record.energy}, {"rms_move", record.rmsMove}, {"evaluations", record.evaluations}});
   }
-  // The first record is that of the initial sites.
-  const std::size_t iterations = summary.iterations.empty() ? 0 : summary.iterations.size() - 1;
-  return {{"value", summary.energy},    {"optimal", summary.optimalEnergy},   {"relative_error", summary.relativeError},
-          {"iterations", iterations},   {"evaluations", summary.evaluations}, {"stop", cvt::toString(summary.stop)},
+  return {{"value", summary.energy},
+          {"optimal", summary.optimalEnergy},
+          {"relative_error", summary.relativeError},
+          {"iterations", summary.iterationsDone},
+          {"restarts", summary.restarts},
+          {"evaluations", summary.evaluations},
+          {"stop", cvt::toString(summary.stop)},
           {"history", std::move(steps)}};
 }
 

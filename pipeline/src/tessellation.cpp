@@ -3,8 +3,6 @@
 #include <cmath>
 #include <cstdio>
 
-#include <unistd.h>
-
 #include "voroform/core/error.hpp"
 #include "warnings.hpp"
 
@@ -129,22 +127,7 @@ Measurement measure(const mesh::PolyhedralComplex& complex, const Form& form, st
   return result;
 }
 
-void checkMemory(const cvt::TessellateOptions& options) {
-  if (options.sites < 1) return;
-  std::uint64_t limit = options.memoryLimit;
-  if (limit == 0) {
-    limit = static_cast<std::uint64_t>(::sysconf(_SC_PHYS_PAGES)) * static_cast<std::uint64_t>(::sysconf(_SC_PAGESIZE));
-  }
-  const std::uint64_t needed = cvt::estimatedMemory(options.sites);
-  if (needed <= limit) return;
-  throw EnvironmentError(std::to_string(options.sites) + " sites need about " + std::to_string(needed >> 20U) +
-                         " MiB of memory, " + std::to_string(limit >> 20U) + " MiB are there: use fewer sites");
-}
-
 Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context) {
-  checkMemory(options);
-  const std::vector<std::string> problems = cvt::validate(options);
-  if (!problems.empty()) throw UsageError(problems.front());
   Tessellation result;
   result.warnings = form.record.warnings;
   const RunContext recording = recordWarnings(context, result.warnings);
@@ -153,6 +136,10 @@ Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options,
   result.complex = std::move(tessellated.complex);
   result.summary = std::move(tessellated.summary);
   result.seconds = watch.seconds();
+  if (result.complex.cellCount == 0) {
+    throw MethodError("the surface cuts no edge between the cells of the " + std::to_string(options.sites) +
+                      " sites, so that no cell is left: use more sites");
+  }
   warnOfClipping(result.summary, recording);
   result.measurement = measure(result.complex, form, options.seed, recording);
   return result;

@@ -157,5 +157,27 @@ TEST_F(Commands, QuietPrintsNothingAndTheLogEverything) {
   EXPECT_THAT(readFile(folder_ / "log.txt"), HasSubstr("certificate"));
 }
 
+// What a restart evaluates again is no iteration.
+TEST_F(Commands, IterationsAreCountedWithoutRestarts) {
+  const Outcome outcome =
+      run({"tessellate", "shape:gyroid-ball", "-o", folder_ / "out", "--sites", "60", "--iterations", "10"});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto energy = readJson(folder_ / "out/metrics.json")["energy"];
+  ASSERT_GT(energy["restarts"].get<int>(), 0) << "the run must move sites out of empty cells";
+  EXPECT_EQ(energy["iterations"], 10);
+  EXPECT_EQ(energy["history"].size(), 1U + 10U + energy["restarts"].get<std::size_t>());
+  EXPECT_THAT(outcome.out, HasSubstr("optimization: 10 iterations"));
+}
+
+// A single cell has no edge that the surface could cut.
+TEST_F(Commands, TooFewSitesForASingleCellAreAFailureOfTheMethod) {
+  for (const char* sites : {"1", "2"}) {
+    const Outcome outcome = run({"tessellate", "shape:sphere", "-o", folder_ / "out", "--sites", sites});
+    EXPECT_EQ(outcome.exitCode, 4);
+    EXPECT_THAT(outcome.err, HasSubstr("use more sites"));
+    EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  }
+}
+
 }  // namespace
 }  // namespace voroform::test

@@ -43,7 +43,8 @@ class Progress {
     summary_.energy = energy;
     summary_.optimalEnergy = optimalEnergy(siteCount, volume);
     summary_.relativeError = (energy - summary_.optimalEnergy) / summary_.optimalEnergy;
-    const int done = iterationsDone();
+    const int done = static_cast<int>(summary_.iterations.size()) - 1 - summary_.restarts;
+    summary_.iterationsDone = done;
     if (options_.iterations > 0) context_.report("optimize", static_cast<double>(done) / options_.iterations);
     if (options_.convergence > 0 && rmsMove <= options_.convergence) {
       summary_.stop = StopReason::converged;
@@ -58,8 +59,7 @@ class Progress {
   }
 
   // A restart evaluates the state it starts from again: that is no iteration.
-  void restarted() { ++restarts_; }
-  int iterationsDone() const { return static_cast<int>(summary_.iterations.size()) - 1 - restarts_; }
+  void restarted() { ++summary_.restarts; }
   void stalled() { summary_.stop = StopReason::stalled; }
 
  private:
@@ -68,7 +68,6 @@ class Progress {
   TessellateSummary& summary_;
   const RunContext& context_;
   voronoi::ClipOptions clip_;
-  int restarts_ = 0;
 };
 
 // Moves the sites without a cell into the largest cells, one each.

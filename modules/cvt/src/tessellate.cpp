@@ -1,11 +1,11 @@
 #include "voroform/cvt/tessellate.hpp"
 
+#include <algorithm>
 #include <string>
-
-#include <unistd.h>
 
 #include "optimize.hpp"
 #include "voroform/core/error.hpp"
+#include "voroform/core/memory.hpp"
 #include "voroform/cvt/energy.hpp"
 #include "voroform/cvt/sites.hpp"
 #include "voroform/voronoi/diagram.hpp"
@@ -18,21 +18,6 @@ namespace {
 // torus, up to 2.8 kB at 100,000 sites of thin scans.
 constexpr std::uint64_t kBytesPerSite = 3000;
 constexpr Index kMostSites = 50'000'000;
-
-std::uint64_t availableMemory() {
-  const long pages = ::sysconf(_SC_PHYS_PAGES);
-  const long size = ::sysconf(_SC_PAGESIZE);
-  return pages > 0 && size > 0 ? static_cast<std::uint64_t>(pages) * static_cast<std::uint64_t>(size) : 0;
-}
-
-void requireMemory(const TessellateOptions& options) {
-  const std::uint64_t limit = options.memoryLimit != 0 ? options.memoryLimit : availableMemory();
-  const std::uint64_t needed = estimatedMemory(options.sites);
-  if (limit != 0 && needed > limit) {
-    throw EnvironmentError(std::to_string(options.sites) + " sites need about " + std::to_string(needed >> 20U) +
-                           " MiB of memory, " + std::to_string(limit >> 20U) + " MiB are there: use fewer sites");
-  }
-}
 
 }  // namespace
 
@@ -67,7 +52,15 @@ std::vector<std::string> validate(const TessellateOptions& options) {
   return violations;
 }
 
-std::uint64_t estimatedMemory(Index sites) { return kBytesPerSite * static_cast<std::uint64_t>(sites); }
+std::uint64_t estimatedMemory(Index sites) { return kBytesPerSite * static_cast<std::uint64_t>(std::max(sites, 0)); }
+
+void requireMemory(const TessellateOptions& options) {
+  const std::uint64_t limit = options.memoryLimit != 0 ? options.memoryLimit : usableMemory();
+  const std::uint64_t needed = estimatedMemory(options.sites);
+  if (needed <= limit) return;
+  throw EnvironmentError(std::to_string(options.sites) + " sites need about " + std::to_string(needed >> 20U) +
+                         " MiB of memory, " + std::to_string(limit >> 20U) + " MiB are there: use fewer sites");
+}
 
 TessellateResult tessellate(const implicit::ImplicitFunction& f, const Frame& frame, const TessellateOptions& options,
                             const RunContext& context) {

@@ -47,11 +47,7 @@ struct Tessellation {
   double seconds = 0;                 // of the tessellation alone
 };
 
-// Throws EnvironmentError if so many sites are estimated to need more than the limit or the machine's memory: to be
-// called before the form is made, so that a long run fails at its start.
-void checkMemory(const cvt::TessellateOptions& options);
-
-// Tessellates and measures. Warns of what was lost. Throws as cvt::tessellate does.
+// Tessellates and measures. Warns of what was lost. Throws as cvt::tessellate does, and MethodError if no cell is left.
 Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context);
 
 struct WriteOptions {

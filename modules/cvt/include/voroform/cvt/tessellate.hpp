@@ -38,8 +38,8 @@ struct TessellateOptions {
   double relativeError = 0;
   // How often sites without a cell may be moved into the largest cells.
   int reseedRounds = 3;
-  // Memory the run may take, in bytes; a larger estimate throws EnvironmentError before anything is allocated. 0: the
-  // machine's available memory.
+  // Memory the run may take, in bytes; a larger estimate throws EnvironmentError before anything is allocated. 0:
+  // usableMemory().
   std::uint64_t memoryLimit = 0;
   std::uint64_t seed = 0;
 };
@@ -54,7 +54,9 @@ struct IterationRecord {
 
 struct TessellateSummary {
   StopReason stop = StopReason::iterations;
-  std::vector<IterationRecord> iterations;  // the first for the initial sites
+  std::vector<IterationRecord> iterations;  // the first for the initial sites; one more for each restart
+  int iterationsDone = 0;                   // without the states that restarts began with
+  int restarts = 0;                         // of L-BFGS, after sites were moved out of empty cells
   double energy = 0;                        // of the returned tessellation's sites, with flat caps
   double optimalEnergy = 0;                 // E_3 = 3·n·(V/n)^(5/3)·G₃
   double relativeError = 0;                 // (energy − optimalEnergy)/optimalEnergy
@@ -79,5 +81,8 @@ TessellateResult tessellate(const implicit::ImplicitFunction& f, const Frame& fr
 
 // Peak memory in bytes that tessellate is estimated to take for n sites.
 std::uint64_t estimatedMemory(Index sites);
+// Throws EnvironmentError if that is more than the limit. tessellate checks it too; a caller that makes the form first
+// can so fail before.
+void requireMemory(const TessellateOptions& options);
 
 }  // namespace voroform::cvt
