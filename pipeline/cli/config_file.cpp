@@ -6,6 +6,7 @@
 #include <cstring>
 #include <fstream>
 #include <string>
+#include <system_error>
 
 #include <toml++/toml.h>
 
@@ -40,6 +41,9 @@ std::string valueText(const toml::node& node, const std::string& where, const st
 }  // namespace
 
 void applyConfigFile(CLI::App& command, const std::filesystem::path& path) {
+  std::error_code ignored;
+  if (std::filesystem::is_directory(path, ignored))
+    throw UsageError(path.string() + ": expected a file, found a folder");
   errno = 0;
   std::ifstream stream(path, std::ios::binary);
   if (!stream) throw UsageError(path.string() + ": cannot be opened: " + std::strerror(errno));
@@ -57,6 +61,9 @@ void applyConfigFile(CLI::App& command, const std::filesystem::path& path) {
       throw UsageError(where + "unknown key \"" + key + "\" for the command " + command.get_name());
     }
     const std::string value = valueText(node, where, key);
+    if (option->get_items_expected_max() == 0 && !node.is_boolean()) {
+      throw UsageError(where + key + ": expected true or false, found " + value);
+    }
     if (option->count() > 0) continue;
     try {
       option->add_result(value);

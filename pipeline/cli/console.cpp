@@ -4,7 +4,6 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
-#include <iostream>
 
 #include <unistd.h>
 
@@ -17,10 +16,18 @@ namespace {
 constexpr int kBarWidth = 30;
 constexpr std::chrono::milliseconds kBarInterval{100};
 
+// Not through std::cerr, which is for what libraries print (see CapturedStream).
+void print(const char* prefix, std::string_view message) {
+  std::fprintf(stderr, "%s%.*s\n", prefix, static_cast<int>(message.size()), message.data());
+}
+
 }  // namespace
 
 Console::Console(const Settings& settings)
-    : quiet_(settings.quiet), verbose_(settings.verbose), terminal_(::isatty(STDERR_FILENO) == 1) {
+    : quiet_(settings.quiet),
+      verbose_(settings.verbose),
+      terminal_(::isatty(STDERR_FILENO) == 1),
+      logName_(settings.logFile) {
   if (settings.logFile.empty()) return;
   errno = 0;
   logFile_.open(settings.logFile, std::ios::trunc);
@@ -43,8 +50,15 @@ RunContext Console::context(const std::atomic<bool>& cancelled, int threads) {
 void Console::error(std::string_view message) {
   const std::lock_guard lock(mutex_);
   clearBar();
-  std::cerr << "voroform: error: " << message << '\n';
+  print("voroform: error: ", message);
   writeLog("error", message);
+}
+
+void Console::closeLog() {
+  const std::lock_guard lock(mutex_);
+  if (!logFile_.is_open()) return;
+  logFile_.close();
+  if (logFile_.fail()) throw EnvironmentError(logName_ + ": the log file could not be written");
 }
 
 void Console::progress(std::string_view stage, double share) {
@@ -56,7 +70,7 @@ void Console::progress(std::string_view stage, double share) {
   }
   if (quiet_) return;
   if (!terminal_) {
-    if (newStage) std::cerr << stage << '\n';
+    if (newStage) print("", stage);
     return;
   }
   // A finished stage leaves no bar in the way of what is printed next.
@@ -82,8 +96,7 @@ void Console::log(LogLevel level, std::string_view message) {
   if (level == LogLevel::debug && !verbose_) return;
   if (level == LogLevel::info && quiet_) return;
   clearBar();
-  if (level == LogLevel::warning) std::cerr << "warning: ";
-  std::cerr << message << '\n';
+  print(level == LogLevel::warning ? "warning: " : "", message);
 }
 
 void Console::clearBar() {

@@ -25,6 +25,8 @@ class Console {
   // The sinks for a run; the console must outlive it.
   RunContext context(const std::atomic<bool>& cancelled, int threads);
   void error(std::string_view message);
+  // Throws EnvironmentError if the log file could not be written in full.
+  void closeLog();
 
  private:
   void progress(std::string_view stage, double share);
@@ -38,6 +40,7 @@ class Console {
   const bool terminal_;
   const Clock::time_point start_ = Clock::now();
   std::mutex mutex_;
+  std::string logName_;
   std::ofstream logFile_;
   std::string stage_;
   bool barShown_ = false;

@@ -8,6 +8,7 @@
 #include <optional>
 #include <vector>
 
+#include "captured_stream.hpp"
 #include "commands.hpp"
 #include "config_file.hpp"
 #include "console.hpp"
@@ -102,13 +103,42 @@ int exitCodeOf(const std::function<int()>& work, const std::function<void(const 
   }
 }
 
+void printError(const std::string& message) { std::fprintf(stderr, "voroform: error: %s\n", message.c_str()); }
+
+void flushOutput() {
+  std::cout.flush();
+  if (!std::cout) throw EnvironmentError("cannot write to the standard output");
+}
+
+// Help and the version are asked for; all else is a mistake in the arguments. Gives the exit code.
+int answer(const CLI::App& app, const CLI::ParseError& problem) {
+  if (problem.get_exit_code() == 0) {
+    app.exit(problem);
+    return exitCodeOf(
+        [] {
+          flushOutput();
+          return kExitDone;
+        },
+        printError);
+  }
+  const std::vector<CLI::App*> chosen = app.get_subcommands();
+  const std::vector<std::string> unknown = app.remaining();
+  if (chosen.empty() && !unknown.empty()) {
+    printError("unknown command or option: " + unknown.front() + "; see voroform --help for the commands");
+  } else {
+    const std::string command = chosen.empty() ? "" : " " + chosen.front()->get_name();
+    printError(std::string(problem.what()) + "; see voroform" + command + " --help");
+  }
+  return kExitUsage;
+}
+
 int runCommand(const Command& command, Settings& settings, const SignalWatch& signals) {
   std::optional<Console> console;
   const auto report = [&console](const std::string& message) {
     if (console) {
       console->error(message);
     } else {
-      std::cerr << "voroform: error: " << message << '\n';
+      printError(message);
     }
   };
   return exitCodeOf(
@@ -118,10 +148,11 @@ int runCommand(const Command& command, Settings& settings, const SignalWatch& si
           throw UsageError("--output is required; see voroform " + command.app->get_name() + " --help");
         }
         console.emplace(settings);
-        const int code =
-            command.run(settings, *command.app, console->context(signals.cancelled(), effectiveThreads(settings)));
-        std::cout.flush();
-        if (!std::cout) throw EnvironmentError("cannot write to the standard output");
+        const RunContext context = console->context(signals.cancelled(), effectiveThreads(settings));
+        const CapturedStream libraries(std::cerr, [&context](std::string_view line) { context.debug(line); });
+        const int code = command.run(settings, *command.app, context);
+        flushOutput();
+        console->closeLog();
         return code;
       },
       report);
@@ -136,21 +167,11 @@ int run(int argc, char** argv) {
   CLI::App app("Turns oriented point clouds into clipped centroidal Voronoi tessellations", "voroform");
   app.set_version_flag("--version", std::string("voroform ") + VOROFORM_VERSION);
   app.require_subcommand(1);
-  app.failure_message(CLI::FailureMessage::simple);
   const std::vector<Command> commands = addCommands(app, settings);
   try {
     app.parse(argc, argv);
-  } catch (const CLI::RequiredError& error) {
-    const std::vector<std::string> unknown = app.remaining();
-    if (app.get_subcommands().empty() && !unknown.empty()) {
-      std::cerr << "voroform: error: unknown command or option: " << unknown.front()
-                << "; see voroform --help for the commands\n";
-    } else {
-      app.exit(error);
-    }
-    return kExitUsage;
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error) == 0 ? kExitDone : kExitUsage;
+  } catch (const CLI::ParseError& problem) {
+    return answer(app, problem);
   }
   for (const Command& command : commands) {
     if (command.app->parsed()) return runCommand(command, settings, signals);

@@ -1,5 +1,6 @@
 #include "options.hpp"
 
+#include <charconv>
 #include <limits>
 #include <set>
 #include <sstream>
@@ -12,6 +13,14 @@ namespace voroform::cli {
 
 namespace {
 
+// The number that the text is, as a whole; CLI11 alone would take -1 for the largest unsigned number.
+template <class T>
+bool parse(const std::string& text, T& value) {
+  const char* const end = text.data() + text.size();
+  const auto parsed = std::from_chars(text.data(), end, value);
+  return parsed.ec == std::errc() && parsed.ptr == end;
+}
+
 // Accepts numbers in [low, high]; the message names the value and the range.
 template <class T>
 CLI::Validator inRange(T low, T high) {
@@ -22,9 +31,18 @@ CLI::Validator inRange(T low, T high) {
       .description("in " + range.str())
       .operation([low, high, text = range.str()](std::string& input) {
         T value{};
-        if (CLI::detail::lexical_cast(input, value) && value >= low && value <= high) return std::string();
+        if (parse(input, value) && value >= low && value <= high) return std::string();
         return input + " is not in " + text;
       });
+  return validator;
+}
+
+// To stand before CLI::AsSizeValue.
+CLI::Validator notNegative() {
+  CLI::Validator validator;
+  validator.name("not negative").operation([](std::string& input) {
+    return input.find('-') == std::string::npos ? std::string() : input + " is not a size";
+  });
   return validator;
 }
 
@@ -44,7 +62,7 @@ CLI::Validator oneOf(const std::vector<std::string>& names) {
 std::vector<std::string> split(const std::string& list) {
   std::vector<std::string> parts;
   std::stringstream stream(list);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(part);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(CLI::detail::trim_copy(part));
   return parts;
 }
 
@@ -69,11 +87,12 @@ CLI::Validator formatList() {
 }  // namespace
 
 void addCommonOptions(CLI::App& command, Settings& settings) {
-  command.add_option("--threads", settings.threads, "Threads to use; 0: as many as the machine has")
+  command.add_option("--threads", settings.threads, "Most threads to use; 0: as many as the machine has")
       ->check(inRange(0, 1024))
       ->capture_default_str()
       ->group("Common options");
   command.add_option("--seed", settings.seed, "Seed of all random numbers")
+      ->check(inRange(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()))
       ->capture_default_str()
       ->group("Common options");
   command.add_flag("--quiet", settings.quiet, "Print warnings and errors only")->group("Common options");
@@ -142,11 +161,11 @@ void addTessellationOptions(CLI::App& command, Settings& settings) {
       ->type_name("LIST")
       ->check(formatList())
       ->capture_default_str();
-  command
-      .add_option("--memory-limit", settings.memoryLimit,
-                  "Most memory to take, e.g. 4GB; 0: what the machine has available")
+  command.add_option("--memory-limit", settings.memoryLimit,
+                     "Most memory to take, e.g. 4GB; 0: what the machine has")
       ->type_name("SIZE")
       ->transform(CLI::AsSizeValue(false))
+      ->transform(notNegative())  // the last one added comes first
       ->capture_default_str();
 }
 

@@ -70,6 +70,25 @@ TEST(ConfigFile, RefusesBadValuesWithTheirLine) {
   EXPECT_FALSE(std::filesystem::exists(folder / "out"));
 }
 
+TEST(ConfigFile, FlagsAreTrueOrFalse) {
+  const TemporaryFolder folder;
+  for (const char* value : {"3", "\"yes\"", "[true]"}) {
+    const Outcome outcome =
+        tessellateWith(folder, std::string("sites = 60\nquiet = ") + value + "\n", {"-o", folder / "out"});
+    EXPECT_EQ(outcome.exitCode, 2) << value;
+    EXPECT_THAT(outcome.err, AllOf(HasSubstr("run.toml:2:"), HasSubstr("true or false")));
+  }
+  EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+}
+
+TEST(ConfigFile, IsAFile) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run({"tessellate", "shape:sphere", "--sites", "60", "-o", folder / "out", "--config", folder / ""});
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("folder"));
+}
+
 TEST(ConfigFile, RefusesWhatIsNotToml) {
   const TemporaryFolder folder;
   const Outcome syntax = tessellateWith(folder, "sites = 60\nmethod = = 2\n", {"-o", folder / "out"});

@@ -71,9 +71,47 @@ INSTANTIATE_TEST_SUITE_P(
                     Misuse{"NegativeRelativeError", {"--relative-error", "-0.5"}, {"--relative-error", "-0.5"}},
                     Misuse{"UnknownFormat", {"--formats", "obj,doc"}, {"--formats", "doc", "obj,off,stl,adjacency"}},
                     Misuse{"NegativeThreads", {"--threads", "-1"}, {"--threads", "-1"}},
+                    Misuse{"NegativeSeed", {"--seed", "-1"}, {"--seed", "-1 is not in"}},
+                    Misuse{"SeedBeyond64Bits", {"--seed", "18446744073709551616"}, {"--seed", "18446744073709551616"}},
+                    Misuse{"NegativeMemory", {"--memory-limit", "-5"}, {"--memory-limit", "-5"}},
                     Misuse{"UnknownOption", {"--colour", "red"}, {"--colour"}},
                     Misuse{"EnvelopeOfAShape", {"--envelope", "box"}, {"--envelope", "shape:sphere"}}),
     [](const testing::TestParamInfo<Misuse>& tested) { return std::string(tested.param.name); });
+
+TEST(Options, TheLargestSeedIsOne) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run({"tessellate", "shape:sphere", "-o", folder / "out", "--sites", "40", "--iterations", "0",
+                               "--seed", "18446744073709551615"});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_EQ(readJson(folder / "out/metrics.json")["seed"], 18446744073709551615U);
+}
+
+TEST(Options, FormatsMayBeSetOffByBlanks) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run({"tessellate", "shape:sphere", "-o", folder / "out", "--sites", "40", "--iterations", "0",
+                               "--formats", "obj, off"});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  EXPECT_TRUE(std::filesystem::exists(folder / "out/surface.off"));
+}
+
+// More threads than cores are no reason for a library to print.
+TEST(Options, ManyThreadsPrintNothing) {
+  const TemporaryFolder folder;
+  const Outcome outcome = run({"tessellate", "shape:sphere", "-o", folder / "out", "--sites", "1000", "--iterations",
+                               "1", "--threads", "1000", "--quiet"});
+  EXPECT_EQ(outcome.exitCode, 0);
+  EXPECT_EQ(outcome.err, "");
+}
+
+TEST(Options, EveryMistakeIsReportedInTheSameWay) {
+  const std::vector<std::vector<std::string>> mistakes = {
+      {}, {"frobnicate"}, {"tessellate"}, {"tessellate", "shape:sphere", "--colour"}, {"info", "a", "b"}};
+  for (const std::vector<std::string>& arguments : mistakes) {
+    const Outcome outcome = run(arguments);
+    EXPECT_EQ(outcome.exitCode, 2);
+    EXPECT_THAT(outcome.err, AllOf(testing::StartsWith("voroform: error: "), HasSubstr("see voroform")));
+  }
+}
 
 TEST(Options, MarginIsAShareOfTheDiagonal) {
   for (const char* value : {"-0.1", "1.5", "nan"}) {

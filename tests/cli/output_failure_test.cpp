@@ -53,6 +53,22 @@ TEST(OutputFailure, MoreSitesThanMemoryAllows) {
   EXPECT_THAT(namesIn(folder / ""), testing::IsEmpty());
 }
 
+// What the program prints is output as well.
+TEST(OutputFailure, FullDevicesForWhatIsPrinted) {
+  if (!std::filesystem::exists("/dev/full")) GTEST_SKIP() << "this system has no /dev/full";
+  const TemporaryFolder folder;
+  const std::string cloud = folder.write("torus.xyz", xyzText(torusPoints(100)));
+  EXPECT_EQ(run({"info", cloud}).exitCode, 0);
+  const Outcome log = run({"points", cloud, "-o", folder / "points.ply", "--log", "/dev/full"});
+  EXPECT_EQ(log.exitCode, 1);
+  EXPECT_THAT(log.err, AllOf(HasSubstr("/dev/full"), HasSubstr("log")));
+  for (const std::string& arguments : {std::string("--help"), "info '" + cloud + "'"}) {
+    const Outcome printed = runCommand({"sh", "-c", "'" + programPath() + "' " + arguments + " > /dev/full"});
+    EXPECT_EQ(printed.exitCode, 1) << arguments;
+    EXPECT_THAT(printed.err, HasSubstr("standard output")) << arguments;
+  }
+}
+
 // A write beyond the limit fails as it does on a full disk.
 TEST(OutputFailure, DiskThatFillsUpLeavesNoneOfTheFiles) {
   const TemporaryFolder folder;
