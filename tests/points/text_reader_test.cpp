@@ -21,6 +21,16 @@ TEST(TextReader, ReadsThreeColumns) {
   EXPECT_EQ(outcome.result.summary.records, 3U);
 }
 
+TEST(TextReader, PassesOverAByteOrderMark) {
+  const std::string mark = "\xEF\xBB\xBF";
+  const Outcome outcome = readBytes(mark + "1 2 3\n4 5 6\n", ".xyz");
+  EXPECT_EQ(outcome.error, "");
+  EXPECT_THAT(outcome.result.cloud.positions, ElementsAre(Vec3(1, 2, 3), Vec3(4, 5, 6)));
+  // Only at the beginning.
+  EXPECT_EQ(readBytes("1 2 3\n" + mark + "4 5 6\n", ".xyz").error,
+            "file:2: expected a number in column 1, found \"\\xef\\xbb\\xbf4\"");
+}
+
 TEST(TextReader, ReadsNormalsFromColumnsFourToSix) {
   for (const std::string format : {".xyz", ".xyzn", ".pwn", ".txt"}) {
     const Outcome outcome = readBytes("1 2 3 0 0 -1 99\n4 5 6 0.6 0.8 0 99\n", format);

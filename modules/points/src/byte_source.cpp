@@ -8,6 +8,13 @@
 
 namespace voroform::points {
 
+namespace {
+
+// Some editors begin UTF-8 text with it.
+constexpr std::string_view kByteOrderMark = "\xEF\xBB\xBF";
+
+}  // namespace
+
 std::string quotedToken(std::string_view token) {
   constexpr std::size_t kLongest = 32;
   constexpr char kHex[] = "0123456789abcdef";
@@ -69,6 +76,7 @@ bool ByteSource::nextLine(std::string_view& line) {
   if (length > 0 && first[length - 1] == '\r') --length;
   line = std::string_view(first, length);
   ++line_;
+  if (line_ == 1 && line.starts_with(kByteOrderMark)) line.remove_prefix(kByteOrderMark.size());
   return true;
 }
 
