@@ -26,7 +26,8 @@ using Triangulation = PoissonFunction::Triangulation;
 
 constexpr double kMostWrongNormals = 0.25;
 constexpr const char* kAdvice =
-    "check that the normals are consistent and point out of the solid, or have them estimated and oriented anew";
+    "check that the normals are consistent and point out of the solid, or leave them out of the file to have them "
+    "estimated and oriented";
 
 // The triangulation with f at its vertices, and the normals of those that are points of the cloud (else zero).
 struct FlatPoisson {
