@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <exception>
-#include <optional>
+#include <utility>
 
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
@@ -116,12 +116,13 @@ class ScaledEnergy final : public ceres::FirstOrderFunction {
 
   bool Evaluate(const double* parameters, double* cost, double* gradient) const override {
     try {
-      const Evaluation evaluation = progress_.evaluate(toSites(parameters));
+      Evaluation evaluation = progress_.evaluate(toSites(parameters));
       *cost = evaluation.energy / (mass_ * spacing_ * spacing_);
+      lastMoments_ = std::move(evaluation.moments);
       states_.push_back({*cost, evaluation.energy, evaluation.volume, evaluation.rmsMove, evaluation.emptyCells});
       if (gradient != nullptr) {
         for (std::size_t i = 0; i < count_; ++i) {
-          const voronoi::SiteMoments& site = evaluation.moments[i];
+          const voronoi::SiteMoments& site = lastMoments_[i];
           const bool filled = site.mass > 0;
           for (Index axis = 0; axis < 3; ++axis) {
             gradient[3 * i + static_cast<std::size_t>(axis)] =
@@ -158,8 +159,14 @@ class ScaledEnergy final : public ceres::FirstOrderFunction {
   State accepted(double cost) {
     const auto match = std::find_if(states_.rbegin(), states_.rend(), [&](const State& s) { return s.cost == cost; });
     if (match != states_.rend()) last_ = *match;
+    acceptedLast_ = !states_.empty() && match == states_.rbegin();
     states_.clear();
     return last_;
+  }
+
+  // The moments of the state accepted last, whose sites these are: at hand if it was also evaluated last.
+  std::vector<voronoi::SiteMoments> acceptedMoments(std::span<const Vec3> sites) const {
+    return acceptedLast_ ? lastMoments_ : progress_.evaluate(sites).moments;
   }
 
   void rethrowFailure() const {
@@ -173,8 +180,10 @@ class ScaledEnergy final : public ceres::FirstOrderFunction {
   double mass_;
   std::size_t count_;
   mutable std::vector<State> states_;
+  mutable std::vector<voronoi::SiteMoments> lastMoments_;
   mutable std::exception_ptr failure_;
   State last_;
+  bool acceptedLast_ = false;
 };
 
 class AcceptedStep final : public ceres::IterationCallback {
@@ -234,8 +243,7 @@ void minimizeLbfgs(std::vector<Vec3>& sites, double volume, const TessellateOpti
       progress.stalled();
       return;
     }
-    const Evaluation state = progress.evaluate(sites);
-    summary.reseededSites += reseed(sites, state.moments, options.seed, round);
+    summary.reseededSites += reseed(sites, energy->acceptedMoments(sites), options.seed, round);
     progress.restarted();
   }
 }
