@@ -22,7 +22,8 @@ class ByteSource {
 
   ByteSource(std::istream& stream, std::string name, const RunContext& context);
 
-  // The next line without its end (LF or CRLF) and the first one without a byte order mark, valid until the next call; false at the end of the file.
+  // The next line without its end (LF or CRLF) and the first one without a byte order mark, valid until the next call;
+  // false at the end of the file.
   bool nextLine(std::string_view& line);
   // The next bytes, at most kBlockBytes, valid until the next call; nullptr (and nothing consumed) if fewer are left.
   const char* take(std::size_t bytes);
