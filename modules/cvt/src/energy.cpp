@@ -1,5 +1,6 @@
 #include "voroform/cvt/energy.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 #include "voroform/core/parallel.hpp"
@@ -12,6 +13,9 @@ namespace {
 constexpr std::size_t kGrain = 4096;
 // Room around the form's bounds, in units of their diagonal.
 constexpr double kDomainMargin = 0.1;
+// A cell with less than this share of the mean mass is as good as empty: its centroid is lost in rounding, or it is
+// what flat caps leave of a part thinner than they can follow.
+constexpr double kEmptyShare = 1e-6;
 
 struct Sums {
   double energy = 0;
@@ -39,12 +43,17 @@ Evaluation evaluateEnergy(std::span<const Vec3> sites, const implicit::ImplicitF
   result.clip = clipped.summary;
   result.moments = voronoi::siteMoments(diagram, clipped, context);
 
+  double volume = 0;
+  for (const voronoi::SiteMoments& site : result.moments) volume += std::max(0.0, site.mass);
+  const double least = kEmptyShare * volume / static_cast<double>(sites.size());
+
   const Sums sums = parallelReduce(
       context, sites.size(), kGrain, Sums{},
       [&](std::size_t begin, std::size_t end, Sums sum) {
         for (std::size_t i = begin; i < end; ++i) {
-          const voronoi::SiteMoments& site = result.moments[i];
-          if (!(site.mass > 0)) {
+          voronoi::SiteMoments& site = result.moments[i];
+          if (!(site.mass > least)) {
+            site = {};
             ++sum.empty;
             continue;
           }

@@ -248,14 +248,17 @@ void minimizeLbfgs(std::vector<Vec3>& sites, double volume, const TessellateOpti
   }
 }
 
-void minimizeLloyd(std::vector<Vec3>& sites, const TessellateOptions& options, Progress& progress,
+void minimizeLloyd(std::vector<Vec3>& sites, const Box3& domain, const TessellateOptions& options, Progress& progress,
                    TessellateSummary& summary) {
   int round = 0;
   while (true) {
     const Evaluation state = progress.evaluate(sites);
     if (progress.accept(state.energy, state.volume, state.rmsMove, static_cast<Index>(sites.size()))) return;
     for (std::size_t i = 0; i < sites.size(); ++i) {
-      if (state.moments[i].mass > 0) sites[i] += state.moments[i].first / state.moments[i].mass;
+      if (!(state.moments[i].mass > 0)) continue;
+      // What flat caps leave of a thin part can have its centroid anywhere.
+      const Vec3 centroid = sites[i] + state.moments[i].first / state.moments[i].mass;
+      if (domain.contains(centroid)) sites[i] = centroid;
     }
     if (state.emptyCells > 0 && round < options.reseedRounds) {
       summary.reseededSites += reseed(sites, state.moments, options.seed, round++);
@@ -269,7 +272,7 @@ void optimizeSites(std::vector<Vec3>& sites, const implicit::ImplicitFunction& f
                    TessellateSummary& summary, const RunContext& context) {
   Progress progress(f, options, summary, context);
   if (options.iterations == 0 || options.optimizer == Optimizer::lloyd) {
-    minimizeLloyd(sites, options, progress, summary);
+    minimizeLloyd(sites, siteDomain(f), options, progress, summary);
     return;
   }
   // The scale of the variables needs a volume: a quasi-random estimate costs less than an evaluation.

@@ -14,8 +14,8 @@ namespace voroform::cvt {
 
 namespace {
 
-// Measured peaks of whole runs with cvt3 caps, certificate and writers included: 2.0 kB a site at a million sites of the
-// torus, up to 2.8 kB at 100,000 sites of thin scans.
+// Measured peaks of whole runs with cvt3 caps, certificate and writers included: 2.0 kB a site at a million sites of
+// the torus, up to 2.8 kB at 100,000 sites of thin scans.
 constexpr std::uint64_t kBytesPerSite = 3000;
 constexpr Index kMostSites = 50'000'000;
 

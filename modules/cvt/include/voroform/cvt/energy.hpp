@@ -15,9 +15,9 @@ namespace voroform::cvt {
 struct Evaluation {
   double energy = 0;
   double volume = 0;                          // Σ mᵢ
-  Index emptyCells = 0;                       // sites whose cell is empty: their mass is not positive
+  Index emptyCells = 0;                       // sites whose cell is empty, or nearly so: mass below 1e-6·V/n
   double rmsMove = 0;                         // rms‖cᵢ − xᵢ‖/h over the other sites, h = (V/n)^(1/3)
-  std::vector<voronoi::SiteMoments> moments;  // of each site
+  std::vector<voronoi::SiteMoments> moments;  // of each site; zero for an empty cell
   voronoi::ClipSummary clip;
   double secondsDelaunay = 0;
   double secondsAfterDelaunay = 0;  // flattening, clipping, integrals
