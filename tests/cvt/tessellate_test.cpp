@@ -181,6 +181,25 @@ TEST(Tessellate, CountsSitesWithoutACell) {
   EXPECT_GT(reseeded, 0);
 }
 
+TEST(Tessellate, FlatCellsCountAsEmpty) {
+  // Cells that hold nothing but a patch in a facet's plane have a mass of rounding errors. Taken for a mass, it gave
+  // centroids anywhere, and these runs of Lloyd's method carried sites out of the domain.
+  const auto form = implicit::gyroidBall();
+  for (const std::uint64_t seed : {1U, 2U, 3U, 5U, 7U, 9U}) {
+    for (const int rounds : {0, 3}) {
+      TessellateOptions options;
+      options.sites = 60;
+      options.optimizer = Optimizer::lloyd;
+      options.seed = seed;
+      options.reseedRounds = rounds;
+      TessellateResult result;
+      ASSERT_NO_THROW(result = tessellate(*form, {}, options, {})) << "seed " << seed;
+      EXPECT_EQ(result.complex.cellCount + result.summary.emptySites, 60);
+      EXPECT_GT(result.complex.cellCount, 30);
+    }
+  }
+}
+
 TEST(Tessellate, ReseedingRecoversCells) {
   const auto form = implicit::gyroidBall();
   TessellateOptions options;
