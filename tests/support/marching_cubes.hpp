@@ -12,9 +12,9 @@
 
 namespace voroform::testing {
 
-// The zero set of f on a grid of cubes with edge `spacing`. Within each face of a cube crossing edges are linked so that
-// inside corners stay apart (the same for both cubes of a face, so the surface is closed); the loops of a cube are cut
-// into fans. Vertices are exact roots on the grid's edges.
+// The zero set of f on a grid of cubes with edge `spacing`. Within each face of a cube crossing edges are linked so
+// that inside corners stay apart (the same for both cubes of a face, so the surface is closed); the loops of a cube are
+// cut into fans. Vertices are exact roots on the grid's edges.
 inline mesh::TriangleMesh marchingCubes(const implicit::ImplicitFunction& f, double spacing,
                                         implicit::RootFinder finder, double tolerance) {
   const Box3 bounds = f.bounds();
@@ -67,7 +67,9 @@ inline mesh::TriangleMesh marchingCubes(const implicit::ImplicitFunction& f, dou
         std::unordered_map<Index, Index> next;
         for (const auto& face : kFaces) {
           for (std::size_t s = 0; s < 4; ++s) {
-            const auto at = [&](std::size_t offset) { return corners[static_cast<std::size_t>(face[(s + offset) % 4])]; };
+            const auto at = [&](std::size_t offset) {
+              return corners[static_cast<std::size_t>(face[(s + offset) % 4])];
+            };
             const auto inside = [&](std::size_t offset) { return values[static_cast<std::size_t>(at(offset))] < 0; };
             if (inside(0) || !inside(1)) continue;
             std::size_t last = 1;
