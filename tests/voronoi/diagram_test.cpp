@@ -237,12 +237,24 @@ TEST(Diagram, NearlyCosphericalSitesAreClippedValidly) {
   }
 }
 
+using Extended = Eigen::Matrix<long double, 3, 1>;
+
+// In extended precision: eleven bits more.
+Extended extendedCircumcenter(const Vec3& p, const Vec3& q, const Vec3& r, const Vec3& s) {
+  const Extended a = q.cast<long double>() - p.cast<long double>();
+  const Extended b = r.cast<long double>() - p.cast<long double>();
+  const Extended c = s.cast<long double>() - p.cast<long double>();
+  const Extended sum = a.squaredNorm() * b.cross(c) + b.squaredNorm() * c.cross(a) + c.squaredNorm() * a.cross(b);
+  return p.cast<long double>() + sum / (2 * a.dot(b.cross(c)));
+}
+
 TEST(Diagram, NearlyFlatTetrahedraHaveExactCircumcenters) {
   // A jitter near the rounding of the coordinates leaves tetrahedra whose determinant has no correct digit in double
   // precision. Their circumcenters are vertices of the diagram, so they lie near the dual lattice's vertices or, where
   // the four sites are nearly a lattice square, near its edges.
   const double jitter = 1e-13;
   const double kNear = 1e3 * jitter;
+  const long double kExtended = 1e-5;  // double precision alone is off by 1e-3
   const auto sites = testing::latticeSites(6, jitter, 7);
   const Diagram diagram = buildDiagram(sites, Box3(Vec3::Constant(-4), Vec3::Constant(4)), {});
   int inside = 0;
@@ -267,6 +279,9 @@ TEST(Diagram, NearlyFlatTetrahedraHaveExactCircumcenters) {
     }
     std::sort(off.begin(), off.end());
     EXPECT_LT(off[1], kNear) << diagram.vertices[v].transpose();
+    const Extended exact = extendedCircumcenter(siteOf(diagram, s[0]), siteOf(diagram, s[1]), siteOf(diagram, s[2]),
+                                                siteOf(diagram, s[3]));
+    EXPECT_LT((diagram.vertices[v].cast<long double>() - exact).norm(), kExtended) << "vertex " << v;
   }
   EXPECT_GT(inside, 500);
   EXPECT_GT(flat, 0) << "the case this test is about occurs";
