@@ -74,5 +74,34 @@ TEST_P(Validity, HoldsForEveryShapeAndCap) {
 
 INSTANTIATE_TEST_SUITE_P(Sites, Validity, ::testing::Values(30, 200, 1000, 2000));
 
+// Where thin walls meet few sites: in some of these runs caps of one cell would cross each other.
+TEST(CrossingCaps, AreSetApart) {
+  const Subject walls[] = {
+      gap(0.02),
+      {"gyroid-ball", implicit::gyroidBall()},
+      {"bumpy shell", implicit::differenceOf(implicit::bumpySphere(), implicit::sphere(0.86))},
+  };
+  Index fallbacks = 0;
+  for (const Subject& subject : walls) {
+    for (const Index sites : {30, 100}) {
+      for (const voronoi::CapKind cap : {voronoi::CapKind::cvt2, voronoi::CapKind::cvt3}) {
+        for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+          TessellateOptions options;
+          options.sites = sites;
+          options.cap = cap;
+          options.seed = seed;
+          options.iterations = seed % 2 == 0 ? 0 : 4;
+          const TessellateResult result = tessellate(*subject.form, {}, options, {});
+          EXPECT_EQ(result.summary.clip.crossingCells, 0) << subject.name << ", seed " << seed;
+          EXPECT_THAT(mesh::validate(result.complex, {}, {}).problems, ::testing::IsEmpty())
+              << subject.name << ", " << sites << " sites, cvt" << static_cast<int>(cap) << ", seed " << seed;
+          fallbacks += result.summary.clip.fallbackCaps;
+        }
+      }
+    }
+  }
+  EXPECT_GT(fallbacks, 0);
+}
+
 }  // namespace
 }  // namespace voroform::cvt
