@@ -116,6 +116,7 @@ Vec3 exactCircumcenter(const Vec3& a, const Vec3& b, const Vec3& c, const Vec3& 
 }
 
 std::vector<Index> spatialOrder(std::span<const Vec3> input) {
+  if (input.empty()) return {};  // CGAL would take a reference to the first point
   std::vector<Kernel::Point_3> points;
   points.reserve(input.size());
   for (const Vec3& p : input) points.emplace_back(p.x(), p.y(), p.z());
