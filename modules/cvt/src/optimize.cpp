@@ -8,6 +8,7 @@
 #include <ceres/gradient_problem.h>
 #include <ceres/gradient_problem_solver.h>
 
+#include "inside.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/random.hpp"
 #include "voroform/cvt/energy.hpp"
@@ -280,9 +281,7 @@ void optimizeSites(std::vector<Vec3>& sites, const implicit::ImplicitFunction& f
   constexpr std::uint64_t kSamples = 20000;
   std::uint64_t inside = 0;
   for (std::uint64_t k = 0; k < kSamples; ++k) {
-    const Vec3 p = quasiRandomInBox(options.seed, k, bounds);
-    const double clearance = f.clearance(p);
-    if (clearance < 0 || (clearance == 0 && f.value(p) < 0)) ++inside;
+    if (isInside(f, quasiRandomInBox(options.seed, k, bounds))) ++inside;
   }
   const double share = static_cast<double>(std::max<std::uint64_t>(inside, 1)) / static_cast<double>(kSamples);
   minimizeLbfgs(sites, share * bounds.volume(), options, progress, summary);

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "inside.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/parallel.hpp"
 #include "voroform/core/random.hpp"
@@ -24,8 +25,7 @@ std::vector<Vec3> insideCandidates(const implicit::ImplicitFunction& f, const Bo
   parallelFor(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Vec3 p = randomInBox(seed, RandomStream::sites, first + i, bounds);
-      const double clearance = f.clearance(p);
-      if (clearance < 0 || (clearance == 0 && f.value(p) < 0)) chunks[begin / kGrain].push_back(p);
+      if (isInside(f, p)) chunks[begin / kGrain].push_back(p);
     }
   });
   std::vector<Vec3> inside;

@@ -2,7 +2,6 @@
 
 #include "edge_roots.hpp"
 #include "facet_clipping.hpp"
-#include "voroform/core/parallel.hpp"
 
 namespace voroform::voronoi {
 
