@@ -7,6 +7,7 @@ set(VOROFORM_MAY_USE_points core mesh)
 set(VOROFORM_MAY_USE_implicit core mesh points)
 set(VOROFORM_MAY_USE_voronoi core mesh implicit)
 set(VOROFORM_MAY_USE_cvt core mesh implicit voronoi)
+set(VOROFORM_MAY_USE_baselines core mesh implicit)
 set(VOROFORM_MAY_USE_metrics core mesh implicit voronoi cvt)
 
 add_library(voroform_flags INTERFACE)

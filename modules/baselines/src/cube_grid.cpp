@@ -1,0 +1,1 @@
+#include "voroform/baselines/cube_grid.hpp"

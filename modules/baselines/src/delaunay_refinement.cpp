@@ -1,0 +1,1 @@
+#include "voroform/baselines/delaunay_refinement.hpp"

@@ -1,0 +1,1 @@
+#include "voroform/baselines/marching_cubes.hpp"

@@ -1,0 +1,18 @@
+// The signed distance to a closed triangle mesh as an implicit form.
+#pragma once
+
+#include <memory>
+
+#include "voroform/core/run_context.hpp"
+#include "voroform/implicit/implicit_function.hpp"
+#include "voroform/mesh/polyhedral_complex.hpp"
+
+namespace voroform::implicit {
+
+// Negative inside. Exact distance by a tree of boxes; sign by the angle-weighted pseudonormal of the nearest feature
+// (Bærentzen & Aanæs 2005), so the mesh must be closed, 2-manifold and outward (mesh::readSolidMesh). The gradient is
+// the unit vector away from the nearest point (the pseudonormal where the distance vanishes). values() is the fast way
+// to evaluate; clearance() answers from a grid.
+ImplicitPtr meshDistance(std::shared_ptr<const mesh::TriangleMesh> mesh, const RunContext& context);
+
+}  // namespace voroform::implicit

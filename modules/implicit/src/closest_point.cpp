@@ -1,0 +1,1 @@
+#include "voroform/implicit/closest_point.hpp"

@@ -1,0 +1,1 @@
+#include "voroform/implicit/mesh_distance.hpp"

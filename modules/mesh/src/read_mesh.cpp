@@ -1,0 +1,1 @@
+#include "voroform/mesh/read_mesh.hpp"

@@ -1,0 +1,1 @@
+#include "voroform/metrics/accuracy.hpp"

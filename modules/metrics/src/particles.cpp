@@ -1,0 +1,1 @@
+#include "voroform/metrics/particles.hpp"

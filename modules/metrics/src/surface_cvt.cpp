@@ -1,0 +1,1 @@
+#include "voroform/metrics/surface_cvt.hpp"
