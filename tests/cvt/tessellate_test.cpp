@@ -318,6 +318,27 @@ TEST(Tessellate, ThreadsGiveTheSameBits) {
   }
 }
 
+TEST(Tessellate, OneOptimizationServesAllCaps) {
+  const auto form = implicit::namedShape("bumpy-sphere");
+  TessellateOptions options;
+  options.sites = 400;
+  options.seed = 11;
+  options.cap = voronoi::CapKind::flat;  // the optimization must not ask
+  const OptimizedSites optimized = optimizeSites(*form, options, {});
+  ASSERT_THAT(optimized.sites, SizeIs(400));
+  for (const auto cap : {voronoi::CapKind::cvt1, voronoi::CapKind::cvt2, voronoi::CapKind::cvt3}) {
+    options.cap = cap;
+    const TessellateResult apart = tessellateSites(optimized, *form, {}, options, {});
+    const TessellateResult whole = tessellate(*form, {}, options, {});
+    EXPECT_THAT(testing::differences(whole.complex, apart.complex), IsEmpty());
+    EXPECT_EQ(apart.summary.energy, whole.summary.energy);
+    EXPECT_EQ(apart.summary.iterationsDone, whole.summary.iterationsDone);
+    EXPECT_EQ(apart.summary.emptySites, whole.summary.emptySites);
+    EXPECT_EQ(apart.summary.clip.loops, whole.summary.clip.loops);
+    EXPECT_EQ(apart.summary.secondsOptimization, optimized.summary.secondsOptimization);
+  }
+}
+
 TEST(Tessellate, SeedsDiffer) {
   TessellateOptions options;
   options.sites = 200;

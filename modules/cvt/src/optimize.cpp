@@ -269,8 +269,8 @@ void minimizeLloyd(std::vector<Vec3>& sites, const Box3& domain, const Tessellat
 
 }  // namespace
 
-void optimizeSites(std::vector<Vec3>& sites, const implicit::ImplicitFunction& f, const TessellateOptions& options,
-                   TessellateSummary& summary, const RunContext& context) {
+void minimizeEnergy(std::vector<Vec3>& sites, const implicit::ImplicitFunction& f, const TessellateOptions& options,
+                    TessellateSummary& summary, const RunContext& context) {
   Progress progress(f, options, summary, context);
   if (options.iterations == 0 || options.optimizer == Optimizer::lloyd) {
     minimizeLloyd(sites, siteDomain(f), options, progress, summary);

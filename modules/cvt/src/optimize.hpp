@@ -6,7 +6,7 @@
 namespace voroform::cvt {
 
 // Moves the sites; fills the summary's iterations, stop, energies, evaluations and reseededSites.
-void optimizeSites(std::vector<Vec3>& sites, const implicit::ImplicitFunction& f, const TessellateOptions& options,
-                   TessellateSummary& summary, const RunContext& context);
+void minimizeEnergy(std::vector<Vec3>& sites, const implicit::ImplicitFunction& f, const TessellateOptions& options,
+                    TessellateSummary& summary, const RunContext& context);
 
 }  // namespace voroform::cvt

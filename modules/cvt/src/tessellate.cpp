@@ -19,6 +19,10 @@ namespace {
 constexpr std::uint64_t kBytesPerSite = 3000;
 constexpr Index kMostSites = 50'000'000;
 
+void throwIfInvalid(const TessellateOptions& options) {
+  if (const auto violations = validate(options); !violations.empty()) throw UsageError(violations.front());
+}
+
 }  // namespace
 
 const char* toString(StopReason reason) {
@@ -62,32 +66,43 @@ void requireMemory(const TessellateOptions& options) {
                          " MiB of memory, " + std::to_string(limit >> 20U) + " MiB are there: use fewer sites");
 }
 
-TessellateResult tessellate(const implicit::ImplicitFunction& f, const Frame& frame, const TessellateOptions& options,
-                            const RunContext& context) {
-  if (const auto violations = validate(options); !violations.empty()) throw UsageError(violations.front());
+OptimizedSites optimizeSites(const implicit::ImplicitFunction& f, const TessellateOptions& options,
+                             const RunContext& context) {
+  throwIfInvalid(options);
   requireMemory(options);
-
-  TessellateResult result;
+  OptimizedSites result;
   Stopwatch watch;
-  std::vector<Vec3> sites = randomSites(f, options.sites, options.seed, context);
+  result.sites = randomSites(f, options.sites, options.seed, context);
   result.summary.secondsInitial = watch.seconds();
 
   watch.restart();
-  optimizeSites(sites, f, options, result.summary, context);
+  minimizeEnergy(result.sites, f, options, result.summary, context);
   result.summary.secondsOptimization = watch.seconds();
+  return result;
+}
 
-  watch.restart();
+TessellateResult tessellateSites(const OptimizedSites& optimized, const implicit::ImplicitFunction& f,
+                                 const Frame& frame, const TessellateOptions& options, const RunContext& context) {
+  throwIfInvalid(options);
+  const Stopwatch watch;
+  TessellateResult result;
+  result.summary = optimized.summary;
   voronoi::ClipOptions clipOptions;
   clipOptions.cap = options.cap;
   clipOptions.rootFinder = options.rootFinder;
-  const voronoi::Diagram diagram = voronoi::buildDiagram(sites, siteDomain(f), context);
+  const voronoi::Diagram diagram = voronoi::buildDiagram(optimized.sites, siteDomain(f), context);
   voronoi::ClippedDiagram clipped = voronoi::clip(diagram, f, clipOptions, context);
   result.complex = voronoi::toComplex(diagram, clipped, f, frame, clipOptions, context);
   result.summary.clip = clipped.summary;
-  result.summary.emptySites = options.sites - result.complex.cellCount;
+  result.summary.emptySites = static_cast<Index>(optimized.sites.size()) - result.complex.cellCount;
   result.summary.secondsClipping = watch.seconds();
   context.report("clip", 1);
   return result;
+}
+
+TessellateResult tessellate(const implicit::ImplicitFunction& f, const Frame& frame, const TessellateOptions& options,
+                            const RunContext& context) {
+  return tessellateSites(optimizeSites(f, options, context), f, frame, options, context);
 }
 
 }  // namespace voroform::cvt

@@ -69,13 +69,29 @@ struct TessellateSummary {
   double secondsClipping = 0;
 };
 
+// Sites that were optimized, and what is known of them before they are clipped.
+struct OptimizedSites {
+  std::vector<Vec3> sites;
+  TessellateSummary summary;  // all but clip, emptySites and secondsClipping
+};
+
 struct TessellateResult {
   mesh::PolyhedralComplex complex;  // cell i belongs to complex.cellSites[i]
   TessellateSummary summary;
 };
 
-// The same bits for any number of threads. Throws UsageError on bad options, MethodError if f has no inside that the
-// sites could be placed in, EnvironmentError if the memory does not suffice, Cancelled.
+// Initial sites and their optimization; the kind of caps asked for plays no part in it, so that one optimization serves
+// all kinds. The same bits for any number of threads. Throws UsageError on bad options, MethodError if f has no inside
+// that the sites could be placed in, EnvironmentError if the memory does not suffice, Cancelled.
+OptimizedSites optimizeSites(const implicit::ImplicitFunction& f, const TessellateOptions& options,
+                             const RunContext& context);
+
+// The tessellation of these sites with the caps and the root finder of the options; the rest of the options is for
+// optimizeSites. Completes the sites' summary.
+TessellateResult tessellateSites(const OptimizedSites& optimized, const implicit::ImplicitFunction& f,
+                                 const Frame& frame, const TessellateOptions& options, const RunContext& context);
+
+// Both in one: optimizeSites, then tessellateSites. Throws as optimizeSites does.
 TessellateResult tessellate(const implicit::ImplicitFunction& f, const Frame& frame, const TessellateOptions& options,
                             const RunContext& context);
 
