@@ -8,7 +8,7 @@
 #include "lzf.hpp"
 #include "readers.hpp"
 #include "records.hpp"
-#include "text_scanner.hpp"
+#include "voroform/core/text_scanner.hpp"
 
 namespace voroform::points {
 namespace {

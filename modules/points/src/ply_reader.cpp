@@ -2,11 +2,18 @@
 #include <bit>
 #include <limits>
 
-#include "ply_header.hpp"
 #include "readers.hpp"
-#include "text_scanner.hpp"
+#include "records.hpp"
+#include "voroform/core/text_scanner.hpp"
+#include "voroform/mesh/ply_header.hpp"
 
 namespace voroform::points {
+
+using mesh::PlyElement;
+using mesh::PlyEncoding;
+using mesh::PlyHeader;
+using mesh::PlyProperty;
+
 namespace {
 
 // Receives the value of a property that is no list.
@@ -143,7 +150,7 @@ FieldRoles rolesOf(const PlyElement& vertex, const ByteSource& source) {
 }  // namespace
 
 ReadResult readPly(ByteSource& source) {
-  const PlyHeader header = readPlyHeader(source);
+  const PlyHeader header = mesh::readPlyHeader(source);
   const auto vertex = std::find_if(header.elements.begin(), header.elements.end(),
                                    [](const PlyElement& element) { return element.name == "vertex"; });
   if (vertex == header.elements.end()) source.fail("the header declares no element vertex");

@@ -2,8 +2,8 @@
 
 #include <fstream>
 
-#include "byte_source.hpp"
 #include "readers.hpp"
+#include "voroform/core/byte_source.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/input_file.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "byte_source.hpp"
+#include "voroform/core/byte_source.hpp"
 #include "voroform/points/read.hpp"
 
 namespace voroform::points {

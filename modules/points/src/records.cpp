@@ -1,72 +1,11 @@
 #include "records.hpp"
 
-#include <algorithm>
-#include <cstring>
 #include <limits>
 
-#include "text_scanner.hpp"
+#include "voroform/core/text_scanner.hpp"
 #include "voroform/core/types.hpp"
 
 namespace voroform::points {
-namespace {
-
-template <class T>
-double decodeAs(const char* bytes, bool swapped) {
-  std::array<char, sizeof(T)> copy;
-  std::memcpy(copy.data(), bytes, sizeof(T));
-  if (swapped) std::reverse(copy.begin(), copy.end());
-  T value;
-  std::memcpy(&value, copy.data(), sizeof(T));
-  return static_cast<double>(value);
-}
-
-}  // namespace
-
-std::size_t sizeOf(ScalarType type) {
-  switch (type) {
-    case ScalarType::int8:
-    case ScalarType::uint8:
-      return 1;
-    case ScalarType::int16:
-    case ScalarType::uint16:
-      return 2;
-    case ScalarType::int32:
-    case ScalarType::uint32:
-    case ScalarType::float32:
-      return 4;
-    case ScalarType::int64:
-    case ScalarType::uint64:
-    case ScalarType::float64:
-      break;
-  }
-  return 8;
-}
-
-double decodeScalar(const char* bytes, ScalarType type, bool swapped) {
-  switch (type) {
-    case ScalarType::int8:
-      return decodeAs<std::int8_t>(bytes, swapped);
-    case ScalarType::uint8:
-      return decodeAs<std::uint8_t>(bytes, swapped);
-    case ScalarType::int16:
-      return decodeAs<std::int16_t>(bytes, swapped);
-    case ScalarType::uint16:
-      return decodeAs<std::uint16_t>(bytes, swapped);
-    case ScalarType::int32:
-      return decodeAs<std::int32_t>(bytes, swapped);
-    case ScalarType::uint32:
-      return decodeAs<std::uint32_t>(bytes, swapped);
-    case ScalarType::int64:
-      return decodeAs<std::int64_t>(bytes, swapped);
-    case ScalarType::uint64:
-      return decodeAs<std::uint64_t>(bytes, swapped);
-    case ScalarType::float32:
-      return decodeAs<float>(bytes, swapped);
-    case ScalarType::float64:
-      break;
-  }
-  return decodeAs<double>(bytes, swapped);
-}
 
 std::string_view roleName(std::size_t role) {
   static constexpr std::array<std::string_view, 6> kNames{"x", "y", "z", "nx", "ny", "nz"};

@@ -8,16 +8,15 @@
 #include <string_view>
 #include <vector>
 
-#include "byte_source.hpp"
+#include "voroform/core/byte_source.hpp"
+#include "voroform/mesh/ply_header.hpp"
 #include "voroform/points/point_cloud.hpp"
 
 namespace voroform::points {
 
-enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
-
-std::size_t sizeOf(ScalarType type);
-// The scalar stored at `bytes`; `swapped` if its byte order is not the machine's.
-double decodeScalar(const char* bytes, ScalarType type, bool swapped);
+using mesh::decodeScalar;
+using mesh::ScalarType;
+using mesh::sizeOf;
 
 // For x, y, z, nx, ny, nz the index of the field that holds it, or -1.
 struct FieldRoles {

@@ -5,7 +5,7 @@
 
 #include "readers.hpp"
 #include "records.hpp"
-#include "text_scanner.hpp"
+#include "voroform/core/text_scanner.hpp"
 
 namespace voroform::points {
 namespace {

@@ -1,13 +1,25 @@
-#include "ply_header.hpp"
+#include "voroform/mesh/ply_header.hpp"
 
 #include <algorithm>
+#include <array>
+#include <cstring>
 #include <optional>
 #include <string_view>
 
-#include "text_scanner.hpp"
+#include "voroform/core/text_scanner.hpp"
 
-namespace voroform::points {
+namespace voroform::mesh {
 namespace {
+
+template <class T>
+double decodeAs(const char* bytes, bool swapped) {
+  std::array<char, sizeof(T)> copy;
+  std::memcpy(copy.data(), bytes, sizeof(T));
+  if (swapped) std::reverse(copy.begin(), copy.end());
+  T value;
+  std::memcpy(&value, copy.data(), sizeof(T));
+  return static_cast<double>(value);
+}
 
 std::optional<ScalarType> scalarType(std::string_view name) {
   if (name == "char" || name == "int8") return ScalarType::int8;
@@ -74,6 +86,52 @@ PlyElement readElement(LineScanner& scanner, const ByteSource& source, const Ply
 
 }  // namespace
 
+std::size_t sizeOf(ScalarType type) {
+  switch (type) {
+    case ScalarType::int8:
+    case ScalarType::uint8:
+      return 1;
+    case ScalarType::int16:
+    case ScalarType::uint16:
+      return 2;
+    case ScalarType::int32:
+    case ScalarType::uint32:
+    case ScalarType::float32:
+      return 4;
+    case ScalarType::int64:
+    case ScalarType::uint64:
+    case ScalarType::float64:
+      break;
+  }
+  return 8;
+}
+
+double decodeScalar(const char* bytes, ScalarType type, bool swapped) {
+  switch (type) {
+    case ScalarType::int8:
+      return decodeAs<std::int8_t>(bytes, swapped);
+    case ScalarType::uint8:
+      return decodeAs<std::uint8_t>(bytes, swapped);
+    case ScalarType::int16:
+      return decodeAs<std::int16_t>(bytes, swapped);
+    case ScalarType::uint16:
+      return decodeAs<std::uint16_t>(bytes, swapped);
+    case ScalarType::int32:
+      return decodeAs<std::int32_t>(bytes, swapped);
+    case ScalarType::uint32:
+      return decodeAs<std::uint32_t>(bytes, swapped);
+    case ScalarType::int64:
+      return decodeAs<std::int64_t>(bytes, swapped);
+    case ScalarType::uint64:
+      return decodeAs<std::uint64_t>(bytes, swapped);
+    case ScalarType::float32:
+      return decodeAs<float>(bytes, swapped);
+    case ScalarType::float64:
+      break;
+  }
+  return decodeAs<double>(bytes, swapped);
+}
+
 bool PlyElement::hasList() const {
   return std::any_of(properties.begin(), properties.end(), [](const PlyProperty& p) { return p.isList; });
 }
@@ -116,4 +174,4 @@ PlyHeader readPlyHeader(ByteSource& source) {
   source.fail("file ends within the header (line " + std::to_string(source.line()) + ")");
 }
 
-}  // namespace voroform::points
+}  // namespace voroform::mesh

@@ -10,7 +10,7 @@
 
 #include "voroform/core/run_context.hpp"
 
-namespace voroform::points {
+namespace voroform {
 
 // A token as it may stand in a message: quoted, at most 32 characters, what cannot be printed as \xNN.
 std::string quotedToken(std::string_view token);
@@ -59,4 +59,4 @@ class ByteSource {
   std::uint64_t line_ = 0;
 };
 
-}  // namespace voroform::points
+}  // namespace voroform

@@ -1,10 +1,10 @@
-#include "text_scanner.hpp"
+#include "voroform/core/text_scanner.hpp"
 
 #include <charconv>
 #include <limits>
 #include <system_error>
 
-namespace voroform::points {
+namespace voroform {
 namespace {
 
 // Whether a number that a double cannot hold is too large (and not too small): by the decimal place of its first
@@ -102,4 +102,4 @@ void LineScanner::expectEnd(std::string_view what) {
   if (!atEnd()) source_->failAtLine("the end of the line after " + std::string(what), quotedToken(word()));
 }
 
-}  // namespace voroform::points
+}  // namespace voroform

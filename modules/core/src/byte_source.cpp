@@ -1,4 +1,4 @@
-#include "byte_source.hpp"
+#include "voroform/core/byte_source.hpp"
 
 #include <algorithm>
 #include <cstring>
@@ -6,7 +6,7 @@
 
 #include "voroform/core/error.hpp"
 
-namespace voroform::points {
+namespace voroform {
 
 namespace {
 
@@ -112,4 +112,4 @@ void ByteSource::failTruncated(std::uint64_t declared, std::string_view things, 
        std::to_string(complete) + " (byte " + std::to_string(bytesRead_) + ")");
 }
 
-}  // namespace voroform::points
+}  // namespace voroform

@@ -1,13 +1,20 @@
-// The header of a PLY file (G. Turk, The PLY Polygon File Format, 1994).
+// The header and the scalars of a PLY file (G. Turk, The PLY Polygon File Format, 1994).
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
 
-#include "records.hpp"
+#include "voroform/core/byte_source.hpp"
 
-namespace voroform::points {
+namespace voroform::mesh {
+
+enum class ScalarType { int8, uint8, int16, uint16, int32, uint32, int64, uint64, float32, float64 };
+
+std::size_t sizeOf(ScalarType type);
+// The scalar stored at `bytes`; `swapped` if its byte order is not the machine's.
+double decodeScalar(const char* bytes, ScalarType type, bool swapped);
 
 enum class PlyEncoding { ascii, littleEndian, bigEndian };
 
@@ -36,4 +43,4 @@ struct PlyHeader {
 // Reads up to and with the line "end_header". Throws InputError at the first line that is not of the format.
 PlyHeader readPlyHeader(ByteSource& source);
 
-}  // namespace voroform::points
+}  // namespace voroform::mesh

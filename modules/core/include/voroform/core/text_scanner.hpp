@@ -6,9 +6,9 @@
 #include <string>
 #include <string_view>
 
-#include "byte_source.hpp"
+#include "voroform/core/byte_source.hpp"
 
-namespace voroform::points {
+namespace voroform {
 
 inline bool isBlank(char c) { return c == ' ' || c == '\t'; }
 
@@ -42,4 +42,4 @@ class LineScanner {
   const char* end_;
 };
 
-}  // namespace voroform::points
+}  // namespace voroform
