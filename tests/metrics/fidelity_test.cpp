@@ -97,6 +97,22 @@ TEST(Fidelity, OracleIsAskedFirst) {
   EXPECT_EQ(a.missedSamples, b.missedSamples);
 }
 
+TEST(Fidelity, TheFormIsSampledOnceForSeveralTessellations) {
+  const BoxForm form = boxForm(Vec3::Zero(), Vec3::Constant(3), 1e9);
+  const InsideSamples samples = insideSamples(form, someSamples(), RunContext{});
+  EXPECT_EQ(form.asked(), 200'000);
+  EXPECT_NEAR(samples.volume, 27, kSigmas * samples.volumeSigma);
+  for (const int size : {2, 3}) {
+    const Fidelity once = fidelity(testing::block(size), samples, someSamples(), RunContext{});
+    EXPECT_EQ(form.asked(), 200'000) << "asked again";
+    const BoxForm fresh = boxForm(Vec3::Zero(), Vec3::Constant(3), 1e9);
+    const Fidelity again = fidelity(testing::block(size), fresh, someSamples(), RunContext{});
+    EXPECT_EQ(once.volumeError, again.volumeError);
+    EXPECT_EQ(once.missedSamples, again.missedSamples);
+    EXPECT_EQ(once.missedShare, again.missedShare);
+  }
+}
+
 TEST(Fidelity, FewerLookUpsWhenAsked) {
   const BoxForm form = boxForm(Vec3::Zero(), Vec3::Constant(3));
   FidelityOptions options = someSamples();

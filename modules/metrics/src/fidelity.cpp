@@ -18,6 +18,7 @@ namespace voroform::metrics {
 namespace {
 
 constexpr std::size_t kSampleGrain = std::size_t{1} << 15U;
+constexpr std::size_t kLookUpGrain = 4096;
 constexpr std::size_t kGrain = 512;
 // A boundary triangle is supported by the cloud if a point lies within this many spacings of its centroid.
 constexpr double kSupportSpacings = 4;
@@ -60,60 +61,44 @@ void insideFlags(const implicit::ImplicitFunction& f, std::span<const Vec3> poin
   for (std::size_t k = 0; k < undecided.size(); ++k) inside[undecided[k].second] = values[k] < 0 ? 1 : 0;
 }
 
-struct SampleCounts {
+struct ChunkSamples {
   std::int64_t inside = 0;
+  std::vector<Vec3> chosen;
+};
+
+struct MissedCounts {
   std::int64_t lookedUp = 0;
   std::int64_t missed = 0;
 };
 
-SampleCounts countSamples(const implicit::ImplicitFunction& f, const mesh::SurfaceLocator& boundary,
-                          const FidelityOptions& options, const RunContext& context) {
-  const Box3 box = f.bounds();
-  const std::int64_t total = options.volumeSamples;
-  const std::int64_t stride =
-      options.missedSamples > 0 ? std::max<std::int64_t>(1, total / options.missedSamples) : total + 1;
-  return parallelReduce(
-      context, static_cast<std::size_t>(total), kSampleGrain, SampleCounts{},
-      [&](std::size_t begin, std::size_t end, SampleCounts counts) {
-        std::vector<Vec3> points;
-        points.reserve(end - begin);
-        for (std::size_t i = begin; i < end; ++i) points.push_back(quasiRandomInBox(options.seed, i, box));
-        std::vector<std::uint8_t> inside;
-        insideFlags(f, points, box, inside);
-        for (std::size_t k = 0; k < points.size(); ++k) {
-          if (inside[k] == 0) continue;
-          ++counts.inside;
-          if (static_cast<std::int64_t>(begin + k) % stride != 0) continue;
-          const mesh::Location location = boundary.locate(points[k]);
-          if (location == mesh::Location::uncertain) continue;
-          ++counts.lookedUp;
-          if (location == mesh::Location::outside) ++counts.missed;
-        }
-        return counts;
-      },
-      [](const SampleCounts& a, const SampleCounts& b) {
-        return SampleCounts{a.inside + b.inside, a.lookedUp + b.lookedUp, a.missed + b.missed};
-      });
-}
-
-void sampleForm(const implicit::ImplicitFunction& f, const mesh::TriangleMesh& boundary, const FidelityOptions& options,
-                const RunContext& context, Fidelity& result) {
-  const Box3 box = f.bounds();
-  if (options.volumeSamples <= 0 || box.isEmpty()) return;
+void compareWithForm(const mesh::TriangleMesh& boundary, const InsideSamples& samples, const RunContext& context,
+                     Fidelity& result) {
+  if (samples.total == 0) return;
   Box3 extent;
   for (const Vec3& vertex : boundary.vertices) extent.extend(vertex);
   const mesh::SurfaceLocator locator(boundary, 2, mesh::locationTolerance(extent));
-  const SampleCounts counts = countSamples(f, locator, options, context);
-  const auto total = static_cast<double>(options.volumeSamples);
-  const double share = static_cast<double>(counts.inside) / total;
-  result.sampledVolume = box.volume() * share;
-  result.sampledVolumeSigma = box.volume() * std::sqrt(share * (1 - share) / total);
+  const MissedCounts counts = parallelReduce(
+      context, samples.chosen.size(), kLookUpGrain, MissedCounts{},
+      [&](std::size_t begin, std::size_t end, MissedCounts found) {
+        for (std::size_t k = begin; k < end; ++k) {
+          const mesh::Location location = locator.locate(samples.chosen[k]);
+          if (location == mesh::Location::uncertain) continue;
+          ++found.lookedUp;
+          if (location == mesh::Location::outside) ++found.missed;
+        }
+        return found;
+      },
+      [](const MissedCounts& a, const MissedCounts& b) {
+        return MissedCounts{a.lookedUp + b.lookedUp, a.missed + b.missed};
+      });
+  result.sampledVolume = samples.volume;
+  result.sampledVolumeSigma = samples.volumeSigma;
   result.missedSamples = counts.lookedUp;
   if (counts.lookedUp > 0) {
     result.missedShare = static_cast<double>(counts.missed) / static_cast<double>(counts.lookedUp);
   }
   result.volumeError =
-      counts.inside > 0 ? std::abs(mesh::enclosedVolume(boundary) - result.sampledVolume) / result.sampledVolume : 1;
+      samples.volume > 0 ? std::abs(mesh::enclosedVolume(boundary) - samples.volume) / samples.volume : 1;
 }
 
 struct CellEdge {
@@ -215,11 +200,45 @@ Areas boundaryAreas(const mesh::PolyhedralComplex& complex, const mesh::Boundary
 
 }  // namespace
 
-Fidelity fidelity(const mesh::PolyhedralComplex& complex, const implicit::ImplicitFunction& f,
-                  const FidelityOptions& options, const RunContext& context) {
+InsideSamples insideSamples(const implicit::ImplicitFunction& f, const FidelityOptions& options,
+                            const RunContext& context) {
+  InsideSamples result;
+  const Box3 box = f.bounds();
+  if (options.volumeSamples <= 0 || box.isEmpty()) return result;
+  const std::int64_t total = options.volumeSamples;
+  const std::int64_t stride =
+      options.missedSamples > 0 ? std::max<std::int64_t>(1, total / options.missedSamples) : total + 1;
+  std::vector<ChunkSamples> chunks((static_cast<std::size_t>(total) + kSampleGrain - 1) / kSampleGrain);
+  parallelFor(context, static_cast<std::size_t>(total), kSampleGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<Vec3> points;
+    points.reserve(end - begin);
+    for (std::size_t i = begin; i < end; ++i) points.push_back(quasiRandomInBox(options.seed, i, box));
+    std::vector<std::uint8_t> inside;
+    insideFlags(f, points, box, inside);
+    ChunkSamples& chunk = chunks[begin / kSampleGrain];
+    for (std::size_t k = 0; k < points.size(); ++k) {
+      if (inside[k] == 0) continue;
+      ++chunk.inside;
+      if (static_cast<std::int64_t>(begin + k) % stride == 0) chunk.chosen.push_back(points[k]);
+    }
+  });
+  std::int64_t inside = 0;
+  for (const ChunkSamples& chunk : chunks) {
+    inside += chunk.inside;
+    result.chosen.insert(result.chosen.end(), chunk.chosen.begin(), chunk.chosen.end());
+  }
+  const double share = static_cast<double>(inside) / static_cast<double>(total);
+  result.total = total;
+  result.volume = box.volume() * share;
+  result.volumeSigma = box.volume() * std::sqrt(share * (1 - share) / static_cast<double>(total));
+  return result;
+}
+
+Fidelity fidelity(const mesh::PolyhedralComplex& complex, const InsideSamples& samples, const FidelityOptions& options,
+                  const RunContext& context) {
   Fidelity result;
   const mesh::BoundarySurface boundary = mesh::boundarySurface(complex);
-  sampleForm(f, boundary.mesh, options, context, result);
+  compareWithForm(boundary.mesh, samples, context, result);
   result.disconnectedCells = disconnectedCells(complex, context);
   const Areas areas = boundaryAreas(complex, boundary, options, context);
   if (areas.all > 0) {
@@ -227,6 +246,11 @@ Fidelity fidelity(const mesh::PolyhedralComplex& complex, const implicit::Implic
     result.unsupportedShare = areas.unsupported / areas.all;
   }
   return result;
+}
+
+Fidelity fidelity(const mesh::PolyhedralComplex& complex, const implicit::ImplicitFunction& f,
+                  const FidelityOptions& options, const RunContext& context) {
+  return fidelity(complex, insideSamples(f, options, context), options, context);
 }
 
 }  // namespace voroform::metrics

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "voroform/core/run_context.hpp"
 #include "voroform/implicit/implicit_function.hpp"
@@ -22,6 +23,17 @@ struct FidelityOptions {
   std::uint64_t seed = 0;
 };
 
+// What fidelity needs of the form alone: samples of {f < 0}, made once and used for every tessellation of f.
+struct InsideSamples {
+  std::int64_t total = 0;    // samples in f.bounds(), inside or not; 0 if none were wanted or the bounds are empty
+  double volume = 0;         // of {f < 0}
+  double volumeSigma = 0;    // its standard deviation, if the points were random
+  std::vector<Vec3> chosen;  // the inside ones of those to be looked up in the boundary
+};
+// Deterministic for any number of threads.
+InsideSamples insideSamples(const implicit::ImplicitFunction& f, const FidelityOptions& options,
+                            const RunContext& context);
+
 struct Fidelity {
   double sampledVolume = 0;        // of {f < 0}
   double sampledVolumeSigma = 0;   // its standard deviation, if the points were random
@@ -33,7 +45,10 @@ struct Fidelity {
   double unsupportedShare = 0;     // share of the boundary's area farther than four spacings from any point
 };
 
-// Deterministic for any number of threads. Points are drawn in f.bounds(); the complex and f share one local frame.
+// Deterministic for any number of threads. The complex and the form share one local frame.
+Fidelity fidelity(const mesh::PolyhedralComplex& complex, const InsideSamples& samples, const FidelityOptions& options,
+                  const RunContext& context);
+// Both in one.
 Fidelity fidelity(const mesh::PolyhedralComplex& complex, const implicit::ImplicitFunction& f,
                   const FidelityOptions& options, const RunContext& context);
 
