@@ -98,6 +98,11 @@ ArtifactStore::~ArtifactStore() {
 }
 
 void ArtifactStore::put(const std::string& name, const std::function<void(const fs::path&)>& write) {
+  if (const fs::path subfolder = (staging_ / name).parent_path(); subfolder != staging_) {
+    std::error_code error;
+    fs::create_directories(subfolder, error);
+    if (error) throw EnvironmentError((folder_ / name).string() + ": cannot create its folder: " + error.message());
+  }
   try {
     write(staging_ / name);
   } catch (const EnvironmentError& error) {
@@ -112,6 +117,17 @@ void ArtifactStore::put(const std::string& name, const std::function<void(const 
   names_.push_back(name);
 }
 
+// Those that did not exist go again with the store if the commit fails.
+void ArtifactStore::createSubfolders() {
+  for (const std::string& name : names_) {
+    const fs::path subfolder = (folder_ / name).parent_path();
+    for (const fs::path& missing : missingFolders(subfolder)) createdFolders_.push_back(missing);
+    std::error_code error;
+    fs::create_directories(subfolder, error);
+    if (error) throw EnvironmentError(subfolder.string() + ": cannot create the folder: " + error.message());
+  }
+}
+
 void ArtifactStore::commit() {
   const std::lock_guard lock(openStores().mutex);
   std::error_code error;
@@ -124,6 +140,7 @@ void ArtifactStore::commit() {
       throw EnvironmentError((folder_ / name).string() + ": cannot be written: a folder of that name exists");
     }
   }
+  createSubfolders();
   for (const std::string& name : names_) {
     fs::rename(staging_ / name, folder_ / name, error);
     if (error) {

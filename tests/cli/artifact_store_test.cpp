@@ -68,6 +68,32 @@ TEST(ArtifactStore, MovesNothingIfOneFileCannotBeMoved) {
   EXPECT_THAT(namesIn(base / ""), ElementsAre("two"));
 }
 
+TEST(ArtifactStore, MakesSubfolders) {
+  const TemporaryFolder base;
+  {
+    ArtifactStore store(base / "out");
+    store.put("mc/one", writer("1"));
+    store.put("mc/two", writer("2"));
+    store.put("three", writer("3"));
+    EXPECT_THAT(namesIn(base / "out"), ElementsAre(testing::StartsWith(".partial-")));
+    store.commit();
+  }
+  EXPECT_THAT(namesIn(base / "out"), ElementsAre("mc", "three"));
+  EXPECT_THAT(namesIn(base / "out/mc"), ElementsAre("one", "two"));
+}
+
+TEST(ArtifactStore, LeavesNoSubfolderBehindIfOneFileCannotBeMoved) {
+  const TemporaryFolder base;
+  base.write("cvt", "a file where a folder is to be");
+  {
+    ArtifactStore store(base / "");
+    store.put("mc/one", writer("1"));
+    store.put("cvt/one", writer("1"));
+    EXPECT_THROW(store.commit(), EnvironmentError);
+  }
+  EXPECT_THAT(namesIn(base / ""), ElementsAre("cvt"));
+}
+
 TEST(ArtifactStore, NamesTheFinalPathOfWhatCouldNotBeWritten) {
   const TemporaryFolder base;
   const auto failing = [](const std::filesystem::path& path) { throw EnvironmentError(path.string() + ": disk full"); };

@@ -19,7 +19,7 @@ class ArtifactStore {
   ArtifactStore& operator=(const ArtifactStore&) = delete;
 
   // Calls write with the path to write the file to that will be folder/name; messages of what it throws name the
-  // latter. Files are moved in the order in which they were written.
+  // latter. Files are moved in the order in which they were written. The name may hold subfolders ("mc/cells.vtu").
   void put(const std::string& name, const std::function<void(const std::filesystem::path&)>& write);
   // Where a file that was put lies until commit().
   std::filesystem::path pathOf(const std::string& name) const { return staging_ / name; }
@@ -27,6 +27,8 @@ class ArtifactStore {
   void commit();
 
  private:
+  void createSubfolders();
+
   std::filesystem::path folder_;
   std::filesystem::path staging_;
   std::vector<std::filesystem::path> createdFolders_;  // outermost first
