@@ -53,7 +53,45 @@ Json clippingJson(const cvt::TessellateSummary& summary) {
           {"reseeded_sites", summary.reseededSites}};
 }
 
+Json directedJson(const metrics::DirectedAccuracy& directed) {
+  return {{"samples", directed.samples},
+          {"variation", directed.variation},
+          {"mean", directed.mean},
+          {"rms", directed.rms},
+          {"max", directed.max},
+          {"normal_mean", directed.normalMean},
+          {"normal_rms", directed.normalRms},
+          {"unfound", directed.unfound}};
+}
+
+Json relativeJson(const metrics::Accuracy& accuracy, double unit) {
+  return {{"dmean", accuracy.dmean / unit}, {"drmse", accuracy.drmse / unit}, {"dmax", accuracy.dmax / unit}};
+}
+
 }  // namespace
+
+Json accuracyJson(const std::optional<metrics::Accuracy>& accuracy) {
+  if (!accuracy) return nullptr;
+  return {{"units", {{"distances", "the input's"}, {"angles", "radians"}}},
+          {"cell_size", accuracy->cellSize},
+          {"diagonal", accuracy->diagonal},
+          {"dmean", accuracy->dmean},
+          {"drmse", accuracy->drmse},
+          {"dmax", accuracy->dmax},
+          {"nmean", accuracy->nmean},
+          {"nrmse", accuracy->nrmse},
+          {"relative",
+           {{"diagonal", relativeJson(*accuracy, accuracy->diagonal)},
+            {"cell_size", relativeJson(*accuracy, accuracy->cellSize)}}},
+          {"per_direction",
+           {{"form_to_boundary", directedJson(accuracy->fromForm)},
+            {"boundary_to_form", directedJson(accuracy->fromBoundary)}}},
+          {"normal_line",
+           {{"mean", accuracy->normalLine.mean},
+            {"rms", accuracy->normalLine.rms},
+            {"misses", accuracy->normalLine.misses}}},
+          {"unfound", accuracy->fromForm.unfound + accuracy->fromBoundary.unfound}};
+}
 
 std::uint64_t peakMemoryBytes() {
   rusage usage{};
@@ -61,17 +99,21 @@ std::uint64_t peakMemoryBytes() {
   return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
 }
 
-Json countsJson(const mesh::PolyhedralComplex& complex, const Measurement& measurement, Index sites) {
+std::int64_t boundaryTriangles(const mesh::PolyhedralComplex& complex) {
   std::int64_t triangles = 0;
   for (Index f = 0; f < complex.faceCount(); ++f) {
     if (complex.isBoundary(f)) triangles += static_cast<std::int64_t>(complex.face(f).size()) - 2;
   }
+  return triangles;
+}
+
+Json countsJson(const mesh::PolyhedralComplex& complex, const Measurement& measurement, Index sites) {
   return {{"sites", sites},
           {"cells", complex.cellCount},
           {"boundary_cells", measurement.regularity.boundary.cells},
           {"vertices", complex.vertices.size()},
           {"faces", complex.faceCount()},
-          {"boundary_triangles", triangles}};
+          {"boundary_triangles", boundaryTriangles(complex)}};
 }
 
 Json validityJson(const mesh::Certificate& certificate) {
@@ -130,12 +172,14 @@ Json metricsJson(const Form& form, const Tessellation& tessellation, const Write
   json["fidelity"] = std::move(fidelity);
   json["clipping"] = clippingJson(summary);
   json["regularity"] = regularityJson(measurement.regularity);
+  json["accuracy"] = accuracyJson(tessellation.accuracy);
   json["energy"] = energyJson(summary);
-  json["seconds"] = {{"points", form.secondsPoints},
-                     {"implicit", form.secondsImplicit},
-                     {"tessellation", tessellation.seconds},
-                     {"metrics", measurement.seconds},
-                     {"total", form.secondsPoints + form.secondsImplicit + tessellation.seconds + measurement.seconds}};
+  json["seconds"] = {
+      {"points", form.secondsPoints},
+      {"implicit", form.secondsImplicit},
+      {"tessellation", tessellation.seconds},
+      {"metrics", tessellation.secondsMetrics},
+      {"total", form.secondsPoints + form.secondsImplicit + tessellation.seconds + tessellation.secondsMetrics}};
   json["peak_memory_bytes"] = peakMemoryBytes();
   json["warnings"] = tessellation.warnings;
   return json;

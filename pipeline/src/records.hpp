@@ -3,6 +3,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <nlohmann/json.hpp>
@@ -33,7 +34,11 @@ Json validityJson(const mesh::Certificate& certificate);
 // The part of fidelity that is measured on the complex; the rest is what only the making run knew.
 void setMeasuredFidelity(Json& fidelity, const metrics::Fidelity& measured, bool hasCloud);
 Json regularityJson(const metrics::Regularity& regularity);
+// null if there is none.
+Json accuracyJson(const std::optional<metrics::Accuracy>& accuracy);
 Json metricsJson(const Form& form, const Tessellation& tessellation, const WriteOptions& options);
+// Triangles of the boundary, polygons cut into fans.
+std::int64_t boundaryTriangles(const mesh::PolyhedralComplex& complex);
 std::uint64_t peakMemoryBytes();
 
 Json readJson(const std::filesystem::path& path);  // throws InputError

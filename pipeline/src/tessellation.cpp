@@ -3,6 +3,7 @@
 #include <cmath>
 #include <cstdio>
 
+#include "measuring.hpp"
 #include "voroform/core/error.hpp"
 #include "warnings.hpp"
 
@@ -24,24 +25,6 @@ std::string percent(double share) {
 
 double share(Index part, Index whole) { return whole > 0 ? static_cast<double>(part) / whole : 0; }
 
-void warnOfClipping(const cvt::TessellateSummary& summary, const RunContext& context) {
-  const voronoi::ClipSummary& clip = summary.clip;
-  if (summary.emptySites > 0) {
-    context.warn(std::to_string(summary.emptySites) +
-                 " sites ended without a cell and were dropped: some parts of "
-                 "the solid are thinner than the cell size; more sites help");
-  }
-  if (share(clip.multiLoopCells, clip.boundaryCells) > kMultiLoopShareWarning) {
-    context.warn(std::to_string(clip.multiLoopCells) + " of " + std::to_string(clip.boundaryCells) +
-                 " boundary cells are cut by the surface more than once: sheets or gaps thinner than the cell size; "
-                 "more sites help");
-  }
-  if (share(clip.fallbackCaps, clip.loops) > kFallbackShareWarning) {
-    context.warn(std::to_string(clip.fallbackCaps) + " of " + std::to_string(clip.loops) +
-                 " caps were closed in a simpler way than asked for");
-  }
-}
-
 void warnOfLosses(const Measurement& measurement, const RunContext& context) {
   const metrics::Fidelity& fidelity = measurement.fidelity;
   if (fidelity.volumeError > kVolumeErrorWarning) {
@@ -60,6 +43,24 @@ void warnOfLosses(const Measurement& measurement, const RunContext& context) {
 }
 
 }  // namespace
+
+void warnOfClipping(const cvt::TessellateSummary& summary, const RunContext& context) {
+  const voronoi::ClipSummary& clip = summary.clip;
+  if (summary.emptySites > 0) {
+    context.warn(std::to_string(summary.emptySites) +
+                 " sites ended without a cell and were dropped: some parts of "
+                 "the solid are thinner than the cell size; more sites help");
+  }
+  if (share(clip.multiLoopCells, clip.boundaryCells) > kMultiLoopShareWarning) {
+    context.warn(std::to_string(clip.multiLoopCells) + " of " + std::to_string(clip.boundaryCells) +
+                 " boundary cells are cut by the surface more than once: sheets or gaps thinner than the cell size; "
+                 "more sites help");
+  }
+  if (share(clip.fallbackCaps, clip.loops) > kFallbackShareWarning) {
+    context.warn(std::to_string(clip.fallbackCaps) + " of " + std::to_string(clip.loops) +
+                 " caps were closed in a simpler way than asked for");
+  }
+}
 
 const char* toString(ExtraFormat format) {
   switch (format) {
@@ -93,8 +94,8 @@ const char* toString(voronoi::CapKind cap) {
 
 const char* toString(implicit::RootFinder finder) { return finder == implicit::RootFinder::itp ? "itp" : "bisection"; }
 
-Measurement measure(const mesh::PolyhedralComplex& complex, const Form& form, std::uint64_t seed,
-                    const RunContext& context) {
+Measurement measure(const mesh::PolyhedralComplex& complex, const Form& form, const metrics::InsideSamples& samples,
+                    std::uint64_t seed, const RunContext& context) {
   const Stopwatch watch;
   Measurement result;
   context.report("moments", 0);
@@ -119,19 +120,37 @@ Measurement measure(const mesh::PolyhedralComplex& complex, const Form& form, st
   metrics::FidelityOptions fidelityOptions;
   fidelityOptions.points = form.cloud.positions;
   fidelityOptions.spacing = form.record.points ? form.record.points->spacing : 0;
-  fidelityOptions.seed = seed;
-  result.fidelity = metrics::fidelity(complex, *form.function, fidelityOptions, context);
+  result.fidelity = metrics::fidelity(complex, samples, fidelityOptions, context);
   context.report("fidelity", 1);
   warnOfLosses(result, context);
   result.seconds = watch.seconds();
   return result;
 }
 
-Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context) {
+metrics::InsideSamples insideSamples(const Form& form, std::uint64_t seed, const RunContext& context) {
+  context.report("volume", 0);
+  metrics::FidelityOptions options;
+  options.seed = seed;
+  metrics::InsideSamples samples = metrics::insideSamples(*form.function, options, context);
+  context.report("volume", 1);
+  return samples;
+}
+
+Measurement measure(const mesh::PolyhedralComplex& complex, const Form& form, std::uint64_t seed,
+                    const RunContext& context) {
+  const Stopwatch watch;
+  const metrics::InsideSamples samples = insideSamples(form, seed, context);
+  Measurement result = measure(complex, form, samples, seed, context);
+  result.seconds = watch.seconds();
+  return result;
+}
+
+Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context,
+                        bool withAccuracy) {
   Tessellation result;
   result.warnings = form.record.warnings;
   const RunContext recording = recordWarnings(context, result.warnings);
-  const Stopwatch watch;
+  Stopwatch watch;
   cvt::TessellateResult tessellated = cvt::tessellate(*form.function, form.record.frame, options, recording);
   result.complex = std::move(tessellated.complex);
   result.summary = std::move(tessellated.summary);
@@ -141,7 +160,10 @@ Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options,
                       " sites, so that no cell is left: use more sites");
   }
   warnOfClipping(result.summary, recording);
+  watch.restart();
   result.measurement = measure(result.complex, form, options.seed, recording);
+  static_cast<void>(withAccuracy);
+  result.secondsMetrics = watch.seconds();
   return result;
 }
 

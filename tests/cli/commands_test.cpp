@@ -38,7 +38,7 @@ TEST_F(Commands, ReconstructWritesAValidTessellationOfTheSolid) {
   const auto metrics = readJson(folder_ / "out/metrics.json");
   EXPECT_THAT(keysOf(metrics), ElementsAre("schema", "input", "options", "versions", "seed", "threads", "points",
                                            "implicit", "counts", "validity", "fidelity", "clipping", "regularity",
-                                           "energy", "seconds", "peak_memory_bytes", "warnings", "sha256"));
+                                           "accuracy", "energy", "seconds", "peak_memory_bytes", "warnings", "sha256"));
   EXPECT_EQ(metrics["schema"], "voroform.metrics/1");
   EXPECT_EQ(metrics["input"]["kind"], "points");
   EXPECT_EQ(metrics["counts"]["sites"], 800);

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -12,6 +13,7 @@
 #include "voroform/mesh/moments.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
 #include "voroform/mesh/validate.hpp"
+#include "voroform/metrics/accuracy.hpp"
 #include "voroform/metrics/fidelity.hpp"
 #include "voroform/metrics/regularity.hpp"
 #include "voroform/pipeline/artifact_store.hpp"
@@ -26,7 +28,7 @@ const char* toString(cvt::Optimizer optimizer);
 const char* toString(voronoi::CapKind cap);
 const char* toString(implicit::RootFinder finder);
 
-// Everything that is measured on a tessellation against its form.
+// All that is measured on a tessellation against its form but its accuracy.
 struct Measurement {
   std::vector<mesh::CellMoments> moments;  // one a cell
   std::vector<double> regularities;        // one a cell
@@ -39,16 +41,30 @@ struct Measurement {
 Measurement measure(const mesh::PolyhedralComplex& complex, const Form& form, std::uint64_t seed,
                     const RunContext& context);
 
+// h = (V/n)^(1/3), the size of one of n cells in a volume V.
+double cellSize(double volume, Index cells);
+
+// The accuracy of a tessellation, measured with samples a third of the cell size apart: of the form's volume, as it was
+// sampled, and the number of cells. Empty, with a warning, if there is nothing to measure: no cell, no volume, or all
+// of the boundary lies on the envelope.
+std::optional<metrics::Accuracy> measureAccuracy(const mesh::PolyhedralComplex& complex, const Form& form,
+                                                 const Measurement& measurement, std::uint64_t seed,
+                                                 const RunContext& context);
+
 struct Tessellation {
   mesh::PolyhedralComplex complex;
   cvt::TessellateSummary summary;
   Measurement measurement;
+  std::optional<metrics::Accuracy> accuracy;
   std::vector<std::string> warnings;  // of the form, the tessellation and the measurement
   double seconds = 0;                 // of the tessellation alone
+  double secondsMetrics = 0;
 };
 
-// Tessellates and measures. Warns of what was lost. Throws as cvt::tessellate does, and MethodError if no cell is left.
-Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context);
+// Tessellates and measures, the accuracy if asked for. Warns of what was lost. Throws as cvt::tessellate does, and
+// MethodError if no cell is left.
+Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options, const RunContext& context,
+                        bool withAccuracy = true);
 
 struct WriteOptions {
   std::set<ExtraFormat> formats;
@@ -64,6 +80,7 @@ std::vector<std::string> writeResults(const Form& form, const Tessellation& tess
 struct Evaluation {
   mesh::PolyhedralComplex complex;
   Measurement measurement;
+  std::optional<metrics::Accuracy> accuracy;
   bool hasCloud = false;  // the form was made from points
   std::vector<std::string> warnings;
 };
