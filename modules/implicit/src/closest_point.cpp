@@ -80,10 +80,10 @@ class Cuts {
   std::size_t count_ = 0;
 };
 
-// Directions that make angles of 40, 80 and 130 degrees with the z axis.
-const std::array<Vec3, 11>& probes() {
-  static const std::array<Vec3, 11> directions = [] {
-    std::array<Vec3, 11> result;
+// Directions that make angles of 40, 80, 130 and 180 degrees with the z axis.
+const std::array<Vec3, 12>& probes() {
+  static const std::array<Vec3, 12> directions = [] {
+    std::array<Vec3, 12> result;
     std::size_t next = 0;
     const auto ring = [&](int count, double degrees, double turn) {
       const double polar = degrees * std::numbers::pi / 180;
@@ -96,6 +96,7 @@ const std::array<Vec3, 11>& probes() {
     ring(4, 40, 0);
     ring(4, 80, 0.5);
     ring(3, 130, 0);
+    ring(1, 180, 0);
     return result;
   }();
   return directions;
@@ -133,14 +134,18 @@ class Search {
   }
 
  private:
+  struct Minimum {
+    Vec3 position;
+    bool settled;
+  };
+
   bool isAcross(double value) const { return (value < 0) != (side_ < 0); }
 
   // Minimizes |x − p| over f(x) = 0 by replacing f with its linearization at the last point: a step of Newton's method
   // and the tangential correction in one. It converges at the rate distance × curvature on a smooth S, and ends exactly
   // where S is a plane. At a ridge between two pieces it would jump to and fro; then the linearizations of both count.
-  Vec3 minimize(Vec3 x) const {
+  Minimum minimize(Vec3 x) const {
     constexpr int kMostSteps = 24;
-    constexpr double kSettled = 1e-6;  // of the distance: an error of its square in the distance
     constexpr double kSlowConvergence = 0.5;
     const double finest = 1e-2 * kBracket * reach_;
     Cuts cuts;
@@ -164,11 +169,11 @@ class Search {
       if (distance > reach_) next = p_ + reach_ / distance * (next - p_);
       const double step = (next - x).norm();
       x = next;
-      if (step <= kSettled * distance || step <= finest) break;
+      if (step <= kSettled * distance || step <= finest) return {x, true};
       useCuts = useCuts || (k >= 2 && step > kSlowConvergence * lastStep);
       lastStep = step;
     }
-    return x;
+    return {x, false};
   }
 
   // Looks for S on the ray from p around `distance`. A crossing becomes the result if it is the nearest so far.
@@ -201,9 +206,24 @@ class Search {
     return true;
   }
 
-  // Searches locally from a point near S; true if there is a result.
-  bool refine(const Vec3& start) {
-    const Vec3 end = minimize(start);
+  // Searches locally from a point near S; true if there is a result. A search that has not settled, or not on S, for f
+  // bends too much between p and S, goes on from where it met S as long as that comes nearer.
+  bool refine(Vec3 start) {
+    constexpr int kMostRounds = 8;
+    for (int round = 0; round < kMostRounds; ++round) {
+      const Minimum minimum = minimize(start);
+      const double before = best_.found ? best_.distance : 2 * reach_;
+      if (!land(minimum.position)) return false;
+      if (best_.distance >= before) break;
+      const double miss = (best_.position - minimum.position).norm();
+      if (minimum.settled && miss <= kSettled * best_.distance + kBracket * reach_) break;
+      start = best_.position;
+    }
+    return true;
+  }
+
+  // Looks for S on the ray from p to a point that lies on it or nearly so; true if there is a result.
+  bool land(const Vec3& end) {
     const double distance = (end - p_).norm();
     // Too near to tell a direction: S is looked for along its normal.
     constexpr double kNoDirection = 1e-8;
@@ -231,9 +251,10 @@ class Search {
   void searchAround() {
     const Vec3 gradient = f_.gradient(p_);
     const double slope = gradient.norm();
-    const Mat3 frame = frameAlong(slope > 0 ? Vec3(-side_ / slope * gradient) : Vec3(Vec3::UnitZ()));
-    constexpr double kFirstLength = 1.0 / 16;
-    for (double length = kFirstLength * reach_; length <= reach_; length *= 2) {
+    Mat3 frame = frameAlong(slope > 0 ? Vec3(-side_ / slope * gradient) : Vec3(Vec3::UnitZ()));
+    constexpr double kFirstLength = 1.0 / 32;
+    constexpr double kGrowth = 1.4;
+    for (double length = kFirstLength * reach_; length <= reach_; length *= kGrowth) {
       const auto meets = [&](const Vec3& direction) {
         const double value = f_.value(p_ + length * direction);
         return isAcross(value) && takeCrossing(direction, 0, length, value_, value);
@@ -241,8 +262,10 @@ class Search {
       bool met = meets(frame.col(2));
       for (const Vec3& probe : probes()) met = meets(frame * probe) || met;
       if (met) break;
+      // Other directions for the next length.
+      frame = frameAlong(frame * probes()[4]);
     }
-    if (best_.found) refine(Vec3(best_.position));
+    if (best_.found) refine(best_.position);
   }
 
   // A point short of the result's distance where f has the other sign shows that S comes nearer elsewhere.
@@ -260,11 +283,12 @@ class Search {
         if (isAcross(value) && length <= best_.distance) takeCrossing(direction, 0, length, value_, value);
       }
       if (best_.distance == before) return;
-      refine(Vec3(best_.position));
+      refine(best_.position);
     }
   }
 
-  static constexpr double kGraze = 1e-3;  // of the distance: how far beside a grazed ridge S is looked for
+  static constexpr double kSettled = 1e-6;  // of the distance: makes an error of its square in the distance
+  static constexpr double kGraze = 1e-3;    // of the distance: how far beside a grazed ridge S is looked for
 
   const ImplicitFunction& f_;
   const Vec3& p_;
