@@ -1,9 +1,9 @@
 #include "boundary_topology.hpp"
 
 #include <algorithm>
-#include <numeric>
 #include <vector>
 
+#include "disjoint_sets.hpp"
 #include "voroform/core/parallel.hpp"
 
 namespace voroform::mesh {
@@ -15,31 +15,6 @@ constexpr std::size_t kGrain = 512;
 std::uint64_t edgeKey(Index a, Index b) {
   return static_cast<std::uint64_t>(std::min(a, b)) << 32U | static_cast<std::uint64_t>(std::max(a, b));
 }
-
-// Disjoint sets with path halving; joins to the lower root, so that the roots do not depend on the order.
-class DisjointSets {
- public:
-  explicit DisjointSets(std::size_t count) : parent_(count) { std::iota(parent_.begin(), parent_.end(), Index{0}); }
-  Index find(Index i) {
-    while (at(i) != i) {
-      at(i) = at(at(i));
-      i = at(i);
-    }
-    return i;
-  }
-  // True if the two were apart.
-  bool join(Index a, Index b) {
-    a = find(a);
-    b = find(b);
-    if (a == b) return false;
-    at(std::max(a, b)) = std::min(a, b);
-    return true;
-  }
-
- private:
-  Index& at(Index i) { return parent_[static_cast<std::size_t>(i)]; }
-  std::vector<Index> parent_;
-};
 
 // A directed edge of a boundary face: from corner `from` to the next corner `to` of the same face.
 struct HalfEdge {

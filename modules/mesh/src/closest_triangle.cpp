@@ -93,8 +93,9 @@ std::array<float, 6> roundedOutward(const Box3& box) {
   constexpr float kInfinity = std::numeric_limits<float>::infinity();
   std::array<float, 6> result;
   for (Eigen::Index axis = 0; axis < 3; ++axis) {
-    const auto low = static_cast<float>(box.min()[axis]);
-    const auto high = static_cast<float>(box.max()[axis]);
+    constexpr double kLargest = std::numeric_limits<float>::max();
+    const auto low = static_cast<float>(std::clamp(box.min()[axis], -kLargest, kLargest));
+    const auto high = static_cast<float>(std::clamp(box.max()[axis], -kLargest, kLargest));
     const auto i = static_cast<std::size_t>(axis);
     result[i] = static_cast<double>(low) > box.min()[axis] ? std::nextafter(low, -kInfinity) : low;
     result[3 + i] = static_cast<double>(high) < box.max()[axis] ? std::nextafter(high, kInfinity) : high;

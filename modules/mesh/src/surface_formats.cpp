@@ -7,6 +7,7 @@
 
 #include "voroform/core/output_file.hpp"
 #include "voroform/mesh/formats.hpp"
+#include "voroform/mesh/read_mesh.hpp"
 
 namespace voroform::mesh {
 
@@ -72,6 +73,18 @@ void writeSurfacePly(const std::filesystem::path& path, const BoundarySurface& s
     for (const Index v : mesh.triangles[t]) put(bytes, v);
     put(bytes, complex.faceCells[face][0]);
     put(bytes, static_cast<std::uint8_t>(complex.faceTags[face]));
+  }
+  save(path, bytes);
+}
+
+void writeMeshPly(const std::filesystem::path& path, const TriangleMesh& mesh) {
+  std::string bytes = plyStart(mesh.vertices.size()) + "element face " + std::to_string(mesh.triangles.size()) +
+                      "\nproperty list uchar int vertex_indices\nend_header\n";
+  bytes.reserve(bytes.size() + mesh.vertices.size() * 24 + mesh.triangles.size() * 13);
+  for (const Vec3& vertex : mesh.vertices) putPoint(bytes, mesh.frame.origin + vertex);
+  for (const auto& triangle : mesh.triangles) {
+    put(bytes, std::uint8_t{3});
+    for (const Index v : triangle) put(bytes, v);
   }
   save(path, bytes);
 }
