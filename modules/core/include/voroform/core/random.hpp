@@ -18,7 +18,8 @@ enum class RandomStream : std::uint64_t {
   orientation,
   sampling,
   insertion,
-  test
+  test,
+  surfaceSampling
 };
 
 // 64 random bits for a key: SplitMix64's finalizer over the mixed key.

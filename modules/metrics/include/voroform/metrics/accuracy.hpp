@@ -29,9 +29,13 @@ struct DirectedAccuracy {
   double normalRms = 0;
   double variation = 0;      // of the sample set: see SurfaceSamples
   std::int64_t unfound = 0;  // samples for which no nearest point was found; they count in no mean and are reported
+  // Samples whose nearest point lies on the envelope, as happens at the rim of an open scan; they count in no mean
+  // either. Always 0 in the direction from the form, whose nearest points are on faces off the envelope.
+  std::int64_t envelope = 0;
 };
 
-// The thesis's variant: the nearest crossing of the other surface along the facet's normal, both ways, up to 2h.
+// The thesis's variant: the nearest crossing of the other surface along the normal at the sample (of the facet, or of
+// S), to either side, up to 2h.
 struct NormalLineAccuracy {
   std::int64_t misses = 0;  // samples without a crossing; their distance counts as 2h
   double mean = 0;          // ½(mean S→B + mean B→S)
@@ -47,8 +51,8 @@ struct Accuracy {
   DirectedAccuracy fromForm;      // samples on S, nearest point on B
   DirectedAccuracy fromBoundary;  // samples on B, nearest point on S
   NormalLineAccuracy normalLine;
-  double cellSize = 0;        // h
-  double diagonal = 0;        // of the bounding box of the samples on S
+  double cellSize = 0;  // h
+  double diagonal = 0;  // of the bounding box of the samples on S
   double seconds = 0;
 };
 
@@ -60,15 +64,17 @@ struct AccuracyPair {
   double angle = 0;
 };
 
-// The pairs, for files and pictures; in the samples' order.
+// The pairs that count in the means, for files and pictures; in the samples' order.
 struct AccuracyPairs {
   std::vector<AccuracyPair> fromForm;
   std::vector<AccuracyPair> fromBoundary;
 };
 
 // `samples` are those of S (particleSamples with spacing h/3): made once, used for every method. Boundary faces and
-// parts of S on the envelope are left out on both sides. `pairs` may be null. The same bits for any number of threads.
-// Throws MethodError if the boundary has no face off the envelope.
+// parts of S on the envelope are left out on both sides: samples of S are compared with faces off the envelope only,
+// and samples of these faces whose nearest point of S lies on the envelope are left out. `pairs` may be null. The same
+// bits for any number of threads. Throws UsageError if there are no samples of S or h is not above 0, MethodError if
+// the boundary has no face off the envelope or S is nowhere near it.
 Accuracy accuracy(const mesh::PolyhedralComplex& complex, const implicit::ImplicitFunction& f,
                   const SurfaceSamples& samples, const AccuracyOptions& options, const RunContext& context,
                   AccuracyPairs* pairs = nullptr);

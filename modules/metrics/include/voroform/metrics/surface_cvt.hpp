@@ -11,9 +11,12 @@
 namespace voroform::metrics {
 
 struct SurfaceCvtOptions {
-  // Wanted distance between neighbors, in the mesh's units, > 0: the number of samples follows from the area.
+  // Wanted distance between neighbors, in the mesh's units, > 0: as many samples as a hexagonal lattice with this
+  // distance has on the mesh's area, at least 1. The mean distance to the nearest sample, about 0.86 of it after 5
+  // iterations, approaches it from below.
   double spacing = 0;
-  // Lloyd iterations on the surface.
+  // Lloyd iterations on the surface, over-relaxed but for the last; at least 0, which leaves random samples, uniform by
+  // area.
   int iterations = 5;
   std::uint64_t seed = 0;
 };
@@ -28,8 +31,11 @@ struct MeshSamples {
   double seconds = 0;
 };
 
-// Deterministic for any number of threads. An empty mesh gives no samples. The mesh needs no property but finite
-// coordinates.
+// Samples lie inside triangles, hardly ever on edges: sites return to the mesh along the mean normal of their cells.
+// Sheets nearer to each other than the spacing are sampled each for itself, if they face apart. Deterministic for any
+// number of threads. A mesh without area gives no samples. The mesh needs no property but finite coordinates; triangles
+// without area get no samples. Throws UsageError for options out of range, coordinates that are not finite, and a
+// spacing that asks for more than 10⁸ samples.
 MeshSamples surfaceCvt(const mesh::TriangleMesh& mesh, const SurfaceCvtOptions& options, const RunContext& context);
 
 }  // namespace voroform::metrics
