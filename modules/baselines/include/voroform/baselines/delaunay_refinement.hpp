@@ -24,11 +24,9 @@ struct DelaunayOptions {
   int odtIterations = 0;
   bool perturb = false;
   bool exude = false;
-  // Seconds of wall-clock time; 0: no limit. With a limit the work is done in a child process, for CGAL cannot be
-  // interrupted.
+  // Seconds of wall-clock time; 0: no limit.
   double timeLimit = 0;
-  // CGAL's parallel version: faster, but another mesh from run to run.
-  bool parallel = false;
+  // Places the grid on which the first points are found, and seeds CGAL's random numbers.
   std::uint64_t seed = 0;
 };
 std::vector<std::string> validate(const DelaunayOptions& options);
@@ -41,11 +39,12 @@ enum class DelaunayStatus {
 
 struct DelaunaySummary {
   DelaunayStatus status = DelaunayStatus::done;
-  std::string message;           // why there is no result; empty if done
+  std::string message;  // why there is no result; empty if done
   double secondsRefinement = 0;
   double secondsOptimization = 0;
   double seconds = 0;
-  std::uint64_t peakMemoryBytes = 0;  // of the child process; 0 without one
+  // Most memory resident at a time in the child process, with what the calling process held when it started: f too.
+  std::uint64_t peakMemoryBytes = 0;
 };
 
 struct DelaunayResult {
@@ -53,7 +52,13 @@ struct DelaunayResult {
   DelaunaySummary summary;
 };
 
-// Throws UsageError on bad options and Cancelled; failing and running out of time are results.
+// Throws UsageError on bad options, Cancelled, and EnvironmentError if the system grants no child process; failing and
+// running out of time are results.
+//
+// CGAL can run for ever and cannot be interrupted, so all its work is done in a forked child process, on one thread: it
+// can be cancelled, its crash is a result, its memory is counted. The child calls f, which may therefore not wait for a
+// lock that another thread of the calling process can hold, nor count on other threads. The same options give the same
+// bits in every run.
 DelaunayResult delaunayRefinement(const implicit::ImplicitFunction& f, const Frame& frame,
                                   const DelaunayOptions& options, const RunContext& context);
 
