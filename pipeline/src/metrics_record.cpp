@@ -26,6 +26,23 @@ Json optionsJson(const FormRecord& form, const WriteOptions& options) {
           {"formats", std::move(formats)}};
 }
 
+Json directedJson(const metrics::DirectedAccuracy& directed) {
+  return {{"samples", directed.samples},
+          {"variation", directed.variation},
+          {"mean", directed.mean},
+          {"rms", directed.rms},
+          {"max", directed.max},
+          {"normal_mean", directed.normalMean},
+          {"normal_rms", directed.normalRms},
+          {"unfound", directed.unfound}};
+}
+
+Json relativeJson(const metrics::Accuracy& accuracy, double unit) {
+  return {{"dmean", accuracy.dmean / unit}, {"drmse", accuracy.drmse / unit}, {"dmax", accuracy.dmax / unit}};
+}
+
+}  // namespace
+
 Json energyJson(const cvt::TessellateSummary& summary) {
   Json steps = Json::array();
   for (const cvt::IterationRecord& record : summary.iterations) {
@@ -52,23 +69,6 @@ Json clippingJson(const cvt::TessellateSummary& summary) {
           {"oracle_share", clip.oracleShare},
           {"reseeded_sites", summary.reseededSites}};
 }
-
-Json directedJson(const metrics::DirectedAccuracy& directed) {
-  return {{"samples", directed.samples},
-          {"variation", directed.variation},
-          {"mean", directed.mean},
-          {"rms", directed.rms},
-          {"max", directed.max},
-          {"normal_mean", directed.normalMean},
-          {"normal_rms", directed.normalRms},
-          {"unfound", directed.unfound}};
-}
-
-Json relativeJson(const metrics::Accuracy& accuracy, double unit) {
-  return {{"dmean", accuracy.dmean / unit}, {"drmse", accuracy.drmse / unit}, {"dmax", accuracy.dmax / unit}};
-}
-
-}  // namespace
 
 Json accuracyJson(const std::optional<metrics::Accuracy>& accuracy) {
   if (!accuracy) return nullptr;
@@ -158,7 +158,7 @@ Json metricsJson(const Form& form, const Tessellation& tessellation, const Write
                {"seed", options.tessellate.seed},
                {"threads", options.threads}};
   const Json formRecordJson = formJson(form.record);
-  for (const char* key : {"points", "implicit"}) {
+  for (const char* key : {"mesh", "points", "implicit"}) {
     if (formRecordJson.contains(key)) json[key] = formRecordJson[key];
   }
   json["counts"] = countsJson(tessellation.complex, measurement, options.tessellate.sites);

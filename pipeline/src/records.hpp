@@ -2,6 +2,7 @@
 // that they need to be read back as the same bits.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
@@ -22,6 +23,8 @@ inline constexpr const char* kCellsFile = "cells.vtu";
 
 Json versionsJson();
 Json inputJson(const InputRecord& input);
+// The seed of the rotation that stands in the JSON of an input, if there is one. Throws InputError.
+std::optional<std::uint64_t> rotationSeed(const Json& input, const std::string& name);
 
 // form.json.
 Json formJson(const FormRecord& record);
@@ -34,6 +37,8 @@ Json validityJson(const mesh::Certificate& certificate);
 // The part of fidelity that is measured on the complex; the rest is what only the making run knew.
 void setMeasuredFidelity(Json& fidelity, const metrics::Fidelity& measured, bool hasCloud);
 Json regularityJson(const metrics::Regularity& regularity);
+Json energyJson(const cvt::TessellateSummary& summary);
+Json clippingJson(const cvt::TessellateSummary& summary);
 // null if there is none.
 Json accuracyJson(const std::optional<metrics::Accuracy>& accuracy);
 Json metricsJson(const Form& form, const Tessellation& tessellation, const WriteOptions& options);

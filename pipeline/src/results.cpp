@@ -12,22 +12,25 @@ Json filesJson(const std::filesystem::path& folder, const std::vector<std::strin
   return files;
 }
 
+void writeCells(const std::filesystem::path& path, const mesh::PolyhedralComplex& complex,
+                const Measurement& measurement) {
+  std::vector<double> volumes;
+  volumes.reserve(measurement.moments.size());
+  for (const mesh::CellMoments& moments : measurement.moments) volumes.push_back(moments.volume);
+  const std::vector<mesh::CellData> data = {{"volume", std::move(volumes)},
+                                            {"regularity", measurement.regularities},
+                                            {"boundary", measurement.boundaryFlags}};
+  mesh::writeCellsVtu(path, complex, data);
+}
+
 std::vector<std::string> writeResults(const Form& form, const Tessellation& tessellation, const WriteOptions& options,
                                       const std::filesystem::path& folder, const RunContext& context) {
   context.report("writing", 0);
   Tessellation const& t = tessellation;
-  const auto volumes = [&t] {
-    std::vector<double> values;
-    values.reserve(t.measurement.moments.size());
-    for (const mesh::CellMoments& moments : t.measurement.moments) values.push_back(moments.volume);
-    return values;
-  };
   ArtifactStore store(folder);
   writeForm(form, store);
-  const std::vector<mesh::CellData> data = {
-      {"volume", volumes()}, {"regularity", t.measurement.regularities}, {"boundary", t.measurement.boundaryFlags}};
   using Path = std::filesystem::path;
-  store.put(kCellsFile, [&](const Path& path) { mesh::writeCellsVtu(path, t.complex, data); });
+  store.put(kCellsFile, [&](const Path& path) { writeCells(path, t.complex, t.measurement); });
   context.throwIfCancelled();
   const mesh::BoundarySurface surface = mesh::boundarySurface(t.complex);
   store.put("surface.ply", [&](const Path& path) { mesh::writeSurfacePly(path, surface, t.complex); });

@@ -48,12 +48,17 @@ struct MethodOutcome {
   // For the equal-triangles table: the CVT method whose triangle count was aimed at, and the cube edge that gave it.
   std::string matched;
   double cubeEdge = 0;
+  // Empty in the equal-triangles table, where what is counted of it remains, and the measurement's values of each cell.
   mesh::PolyhedralComplex complex;
   Measurement measurement;
   std::optional<metrics::Accuracy> accuracy;
+  Index cells = 0;
+  Index vertices = 0;
+  Index faces = 0;
   std::int64_t boundaryTriangles = 0;
-  std::optional<metrics::QualityStatistics> tetrahedra;  // delaunay, and the dual of cvt1
-  std::optional<metrics::QualityStatistics> triangles;
+  std::optional<metrics::QualityStatistics> tetrahedra;     // delaunay, and the dual of cvt1
+  std::optional<metrics::QualityStatistics> triangles;      // of the boundary, polygons cut into fans
+  std::optional<metrics::QualityStatistics> dualTriangles;  // of the boundary of cvt1's dual
   std::optional<metrics::DualSummary> dual;
   std::optional<cvt::TessellateSummary> cvt;
   std::optional<baselines::MarchingCubesSummary> marchingCubes;
@@ -66,24 +71,35 @@ struct MethodOutcome {
 struct Comparison {
   CompareOptions options;
   baselines::CubeGrid grid;
-  Index sites = 0;      // n, the cubes whose center is inside
-  double cellSize = 0;  // h = (V/n)^(1/3)
-  double diagonal = 0;  // of the solid's bounding box
+  Index sites = 0;             // n, the cubes whose center is inside
+  double volume = 0;           // V, of {f < 0}, sampled
+  double cellSize = 0;         // h = (V/n)^(1/3)
+  double diagonal = 0;         // of the solid's bounding box
   double sampleVariation = 0;  // of the samples on S
   std::int64_t samples = 0;
   std::vector<MethodOutcome> methods;         // at the thesis's rule, in the order of methodNames()
   std::vector<MethodOutcome> equalTriangles;  // mc and delaunay at the triangle counts of the CVTs
   std::vector<std::string> warnings;
-  double secondsEvaluation = 0;
-  double secondsTotal = 0;
+  double secondsEvaluation = 0;  // of all tessellations, with the samples of the form
+  double secondsTotal = 0;       // without the form and the files
 };
 
+// A boundary has as many triangles as another if the numbers differ by at most this share of the latter.
+inline constexpr double kEqualTriangles = 0.02;
+
+// A method that fails is a result; the others go on. The same bits for any number of threads but for seconds and
+// memory. Throws UsageError on bad options, MethodError if f has no inside or no surface to compare at this resolution,
+// EnvironmentError if the memory does not suffice, Cancelled.
 Comparison compare(const Form& form, const CompareOptions& options, const RunContext& context);
 
 inline constexpr const char* kComparisonFile = "comparison.json";
 
-// Writes comparison.json, .csv and .md, the form's files, and a folder of each method's cells.vtu and surface.ply: all
-// of them or none. Returns the names of the files written.
+// The tables of thesis 5.1-5.4 as Markdown, and as comma-separated values: a row a method, all digits.
+std::string comparisonMarkdown(const Form& form, const Comparison& comparison);
+std::string comparisonCsv(const std::vector<MethodOutcome>& outcomes);
+
+// Writes comparison.json, .csv and .md, comparison-equal-triangles.csv, the form's files, and a folder of each method's
+// cells.vtu and surface.ply: all of them or none. Returns the names of the files written.
 std::vector<std::string> writeComparison(const Form& form, const Comparison& comparison,
                                          const std::filesystem::path& folder, const RunContext& context);
 
