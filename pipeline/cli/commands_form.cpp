@@ -28,12 +28,17 @@ int runPoints(const Settings& settings, const CLI::App&, const RunContext& conte
   return kExitDone;
 }
 
-int runImplicit(const Settings& settings, const CLI::App&, const RunContext& context) {
+int runImplicit(const Settings& settings, const CLI::App& command, const RunContext& context) {
   if (settings.input.starts_with("shape:")) {
-    throw UsageError(settings.input + ": implicit fits a form to points; tessellate takes the shape as it is");
+    throw UsageError(settings.input +
+                     ": implicit makes a form of points or a mesh; tessellate takes the shape as it is");
+  }
+  if (std::filesystem::path(settings.input).extension() == ".vtu" || pipeline::isStoredMeshForm(settings.input)) {
+    throw UsageError(settings.input + ": is a form already");
   }
   pipeline::checkOutputFolder(settings.output);
-  const pipeline::Form form = pipeline::formFromPoints(settings.input, formOptions(settings), context);
+  const pipeline::Form form = pipeline::formFromInput(settings.input, formOptions(settings), context);
+  requireMeaning(form, command);
   context.report("writing", 0);
   pipeline::ArtifactStore store(settings.output);
   pipeline::writeForm(form, store);

@@ -27,33 +27,40 @@ int makeResults(const pipeline::Form& form, const Settings& settings, const RunC
   return kExitDone;
 }
 
-bool isForm(const std::string& input) { return std::filesystem::path(input).extension() == ".vtu"; }
+bool isForm(const std::string& input) {
+  return std::filesystem::path(input).extension() == ".vtu" || pipeline::isStoredMeshForm(input);
+}
 
 bool isShape(const std::string& input) { return input.starts_with("shape:"); }
 
 }  // namespace
 
-int runReconstruct(const Settings& settings, const CLI::App&, const RunContext& context) {
+int runReconstruct(const Settings& settings, const CLI::App& command, const RunContext& context) {
   if (isForm(settings.input)) {
-    throw UsageError(settings.input + ": reconstruct starts from points; use tessellate for a form");
+    throw UsageError(settings.input + ": reconstruct starts from points or a mesh; use tessellate for a form");
   }
   pipeline::checkOutputFolder(settings.output);
   cvt::requireMemory(writeOptions(settings).tessellate);
-  return makeResults(pipeline::formFromInput(settings.input, formOptions(settings), context), settings, context);
+  const pipeline::Form form = pipeline::formFromInput(settings.input, formOptions(settings), context);
+  requireMeaning(form, command);
+  return makeResults(form, settings, context);
 }
 
 int runTessellate(const Settings& settings, const CLI::App& command, const RunContext& context) {
   if (isForm(settings.input) || isShape(settings.input)) {
-    for (const char* name : {"--envelope", "--margin", "--as"}) {
+    for (const char* name : {"--envelope", "--margin", "--as", "--implicit", "--samples", "--rotation-seed"}) {
+      if (isShape(settings.input) && std::string(name) == "--rotation-seed") continue;
       if (command.get_option(name)->count() > 0) {
         throw UsageError(std::string(name) + ": has no meaning for " + settings.input +
-                         (isShape(settings.input) ? ", which is closed" : "; the envelope is the one in its record"));
+                         (isShape(settings.input) ? ", which is closed and exact" : "; it stands in its record"));
       }
     }
   }
   pipeline::checkOutputFolder(settings.output);
   cvt::requireMemory(writeOptions(settings).tessellate);
-  return makeResults(pipeline::formFromInput(settings.input, formOptions(settings), context), settings, context);
+  const pipeline::Form form = pipeline::formFromInput(settings.input, formOptions(settings), context);
+  requireMeaning(form, command);
+  return makeResults(form, settings, context);
 }
 
 int runEvaluate(const Settings& settings, const CLI::App&, const RunContext& context) {

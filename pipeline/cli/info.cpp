@@ -16,6 +16,8 @@
 #include "voroform/implicit/form_file.hpp"
 #include "voroform/implicit/tetrahedral_form.hpp"
 #include "voroform/mesh/formats.hpp"
+#include "voroform/mesh/moments.hpp"
+#include "voroform/mesh/read_mesh.hpp"
 #include "voroform/mesh/validate.hpp"
 #include "voroform/points/read.hpp"
 
@@ -84,6 +86,34 @@ Json describePoints(const fs::path& path, const RunContext& context) {
           {"bounds", boxJson(box, read.cloud.frame)}};
 }
 
+// A mesh as a solid's boundary; what keeps it from being one is told and is no failure of the command.
+Json describeMesh(const fs::path& path, const RunContext& context) {
+  Json json = {{"kind", "mesh"}};
+  try {
+    const mesh::MeshReadResult read = mesh::readSolidMesh(path, context);
+    const mesh::MeshReadSummary& summary = read.summary;
+    Box3 box;
+    for (const Vec3& vertex : read.mesh.vertices) box.extend(vertex);
+    json.update(Json{{"format", summary.format},
+                     {"vertices", summary.vertices},
+                     {"faces", summary.faces},
+                     {"triangles", read.mesh.triangles.size()},
+                     {"bounds", boxJson(box, read.mesh.frame)},
+                     {"closed", true},
+                     {"volume", mesh::enclosedVolume(read.mesh)},
+                     {"components", summary.components},
+                     {"euler_characteristic", mesh::eulerCharacteristic(read.mesh)},
+                     {"self_intersections", mesh::meshIntersections(read.mesh, context).pairs},
+                     {"welded", summary.welded},
+                     {"degenerate", summary.degenerate},
+                     {"unused_vertices", summary.unusedVertices},
+                     {"turned_triangles", summary.turnedFaces}});
+  } catch (const mesh::NotSolid& problem) {
+    json.update(Json{{"closed", false}, {"problem", problem.what()}});
+  }
+  return json;
+}
+
 // Both kinds of .vtu are ours; the array that only cells have stands in the header.
 bool holdsCells(const fs::path& path) {
   std::ifstream stream = openInputFile(path);
@@ -120,7 +150,7 @@ int runInfo(const Settings& settings, const CLI::App&, const RunContext& context
   Json json = {{"file", path.string()}, {"bytes", fs::file_size(path, error)}};
   Json content;
   if (path.extension() != ".vtu") {
-    content = describePoints(path, context);
+    content = mesh::holdsFaces(path, context) ? describeMesh(path, context) : describePoints(path, context);
   } else if (holdsCells(path)) {
     content = describeCells(mesh::readCellsVtu(path), settings, context);
   } else {

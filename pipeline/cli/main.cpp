@@ -26,7 +26,9 @@ struct Command {
   Run run;
 };
 
-constexpr const char* kInputHelp = "A point cloud (.ply .xyz .xyzn .pwn .txt .pcd .off)";
+constexpr const char* kPointsHelp = "A point cloud (.ply .xyz .xyzn .pwn .txt .pcd .off)";
+constexpr const char* kInputHelp =
+    "A point cloud (.ply .xyz .xyzn .pwn .txt .pcd .off), a closed mesh (.off .obj .ply .stl)";
 
 CLI::App* addCommand(CLI::App& app, Settings& settings, const std::string& name, const std::string& description,
                      const std::string& input, const std::string& inputDescription) {
@@ -38,25 +40,27 @@ CLI::App* addCommand(CLI::App& app, Settings& settings, const std::string& name,
 std::vector<Command> addCommands(CLI::App& app, Settings& settings) {
   std::vector<Command> commands;
 
-  CLI::App* reconstruct = addCommand(app, settings, "reconstruct", "From points to a measured tessellation", "INPUT",
-                                     std::string(kInputHelp) + ", or shape:NAME");
+  CLI::App* reconstruct = addCommand(app, settings, "reconstruct", "From points or a mesh to a measured tessellation",
+                                     "INPUT", std::string(kInputHelp) + ", or shape:NAME");
   addOutputOption(*reconstruct, settings, "Folder for the results");
   addFormOptions(*reconstruct, settings);
   addTessellationOptions(*reconstruct, settings);
   commands.push_back({reconstruct, runReconstruct});
 
-  CLI::App* points = addCommand(app, settings, "points", "Read, clean and orient a point cloud", "INPUT", kInputHelp);
+  CLI::App* points = addCommand(app, settings, "points", "Read, clean and orient a point cloud", "INPUT", kPointsHelp);
   addOutputOption(*points, settings, "The .ply file to write");
   addInputKindOption(*points, settings);
   commands.push_back({points, runPoints});
 
-  CLI::App* implicit = addCommand(app, settings, "implicit", "Fit an implicit form to points", "INPUT", kInputHelp);
-  addOutputOption(*implicit, settings, "Folder for form.vtu, form.json and points.ply");
+  CLI::App* implicit =
+      addCommand(app, settings, "implicit", "Make an implicit form of points or a mesh", "INPUT", kInputHelp);
+  addOutputOption(*implicit, settings, "Folder for the form's files");
   addFormOptions(*implicit, settings);
   commands.push_back({implicit, runImplicit});
 
-  CLI::App* tessellate = addCommand(app, settings, "tessellate", "Cells from a form, points or a shape, measured",
-                                    "INPUT", "A form (.vtu), shape:NAME, or a point cloud as for reconstruct");
+  CLI::App* tessellate =
+      addCommand(app, settings, "tessellate", "Cells from a form, points or a shape, measured", "INPUT",
+                 "A form (form.vtu, form.ply), shape:NAME, or a cloud or mesh as for reconstruct");
   addOutputOption(*tessellate, settings, "Folder for the results");
   addFormOptions(*tessellate, settings);
   addTessellationOptions(*tessellate, settings);
@@ -67,7 +71,7 @@ std::vector<Command> addCommands(CLI::App& app, Settings& settings) {
   commands.push_back({evaluate, runEvaluate});
 
   CLI::App* info = addCommand(app, settings, "info", "What a file is, its size, its validity", "FILE",
-                              "A point cloud, a form (.vtu) or cells (.vtu)");
+                              "A point cloud, a mesh, a form (.vtu) or cells (.vtu)");
   info->add_flag("--json", settings.json, "Print JSON");
   commands.push_back({info, runInfo});
 

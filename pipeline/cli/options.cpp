@@ -1,5 +1,6 @@
 #include "options.hpp"
 
+#include <algorithm>
 #include <charconv>
 #include <limits>
 #include <set>
@@ -69,19 +70,26 @@ std::vector<std::string> split(const std::string& list) {
 constexpr pipeline::ExtraFormat kFormats[] = {pipeline::ExtraFormat::obj, pipeline::ExtraFormat::off,
                                               pipeline::ExtraFormat::stl, pipeline::ExtraFormat::adjacency};
 
-CLI::Validator formatList() {
+// A list of these names, separated by commas; `thing` is what one of them is.
+CLI::Validator someOf(const std::string& thing, const std::vector<std::string>& names) {
   std::string all;
-  for (const auto format : kFormats) all += (all.empty() ? "" : ",") + std::string(pipeline::toString(format));
+  for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
   CLI::Validator validator;
-  validator.name("formats").description("of " + all).operation([all](std::string& input) {
+  validator.name(thing + "s").description("of " + all).operation([thing, names, all](std::string& input) {
     for (const std::string& part : split(input)) {
-      bool known = false;
-      for (const auto format : kFormats) known = known || part == pipeline::toString(format);
-      if (!known) return "unknown format " + part + "; expected some of " + all;
+      if (std::find(names.begin(), names.end(), part) == names.end()) {
+        return "unknown " + thing + " " + part + "; expected some of " + all;
+      }
     }
     return std::string();
   });
   return validator;
+}
+
+std::vector<std::string> formatNames() {
+  std::vector<std::string> names;
+  for (const auto format : kFormats) names.emplace_back(pipeline::toString(format));
+  return names;
 }
 
 }  // namespace
@@ -114,9 +122,10 @@ void addOutputOption(CLI::App& command, Settings& settings, const std::string& d
 
 void addInputKindOption(CLI::App& command, Settings& settings) {
   command
-      .add_option("--as", settings.as,
-                  "How to read the input: a file with faces is a mesh, one without a cloud; points takes a mesh's "
-                  "vertices as a cloud")
+      .add_option(
+          "--as", settings.as,
+          "How to read the input: auto takes a file with faces for a mesh, one without for a cloud; points takes "
+          "a mesh's vertices as a cloud")
       ->check(oneOf({"auto", "points", "mesh"}))
       ->capture_default_str();
 }
@@ -131,6 +140,23 @@ void addFormOptions(CLI::App& command, Settings& settings) {
   command.add_option("--margin", settings.margin, "Growth of the envelope, as a share of the bounding box's diagonal")
       ->check(inRange(0.0, 1.0))
       ->capture_default_str();
+  command
+      .add_option(
+          "--implicit", settings.implicit,
+          "The function that stands for the input: distance, the signed distance to a mesh; poisson, of a cloud "
+          "or of samples on a mesh; auto: distance for meshes, poisson for clouds")
+      ->check(oneOf({"auto", "poisson", "distance"}))
+      ->capture_default_str();
+  command
+      .add_option("--samples", settings.samples,
+                  "Points on a mesh, uniform by area, that its Poisson form is fitted to")
+      ->check(inRange(Index{100}, Index{100'000'000}))
+      ->capture_default_str();
+  command
+      .add_option("--rotation-seed", settings.rotationSeed,
+                  "Turn the input by a random rotation of this seed before anything else; without it the input is not "
+                  "turned")
+      ->check(inRange(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
 }
 
 void addTessellationOptions(CLI::App& command, Settings& settings) {
@@ -159,14 +185,51 @@ void addTessellationOptions(CLI::App& command, Settings& settings) {
       ->capture_default_str();
   command.add_option("--formats", settings.formats, "Further files to write, separated by commas")
       ->type_name("LIST")
-      ->check(formatList())
+      ->check(someOf("format", formatNames()))
       ->capture_default_str();
+  command.add_flag("--no-accuracy", settings.noAccuracy, "Do not measure the accuracy, which takes its time");
   command.add_option("--memory-limit", settings.memoryLimit,
                      "Most memory to take, e.g. 4GB; 0: what the machine has")
       ->type_name("SIZE")
       ->transform(CLI::AsSizeValue(false))
       ->transform(notNegative())  // the last one added comes first
       ->capture_default_str();
+}
+
+void addCompareOptions(CLI::App& command, Settings& settings) {
+  command
+      .add_option(
+          "--resolution", settings.resolution,
+          "Cubes of Marching Cubes along the longest edge of the solid's bounding box; the numbers of sites and "
+          "tetrahedra follow from it")
+      ->check(inRange(Index{4}, Index{1000}))
+      ->capture_default_str();
+  command.add_option("--methods", settings.methods, "The methods to run, separated by commas; all if not given")
+      ->type_name("LIST")
+      ->check(someOf("method", pipeline::methodNames()));
+  command.add_option("--iterations", settings.iterations, "Iterations of the CVTs' optimizer")
+      ->check(inRange(0, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--lloyd-iterations", settings.lloydIterations, "Lloyd steps after Delaunay refinement")
+      ->check(inRange(0, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--odt-iterations", settings.odtIterations, "ODT steps after them")
+      ->check(inRange(0, 1'000'000))
+      ->capture_default_str();
+  command.add_flag("--perturb", settings.perturb, "Then perturb vertices at slivers");
+  command.add_flag("--exude", settings.exude, "At last remove slivers by weights");
+  command
+      .add_option("--delaunay-time-limit", settings.delaunayTimeLimit,
+                  "Seconds after which a run of Delaunay refinement is given up; 0: never")
+      ->check(inRange(0.0, 1e9))
+      ->capture_default_str();
+  command.add_flag("--no-equal-triangles", settings.noEqualTriangles,
+                   "Leave out the comparison at equal numbers of boundary triangles");
+  command.add_flag("--no-dual", settings.noDual, "Leave out the dual tetrahedra of cvt1");
+  command.add_flag(
+      "--no-rotation", settings.noRotation,
+      "Leave shapes and meshes as they lie; else they are turned by a rotation that follows from the seed, "
+      "for Marching Cubes is exact on planes along its grid");
 }
 
 int effectiveThreads(const Settings& settings) {
@@ -180,7 +243,27 @@ pipeline::FormOptions formOptions(const Settings& settings) {
   if (settings.as == "mesh") options.inputKind = pipeline::InputKind::mesh;
   options.envelope = settings.envelope == "none" ? pipeline::Envelope::none : pipeline::Envelope::box;
   options.margin = settings.margin;
+  if (settings.implicit == "poisson") options.implicitKind = pipeline::ImplicitKind::poisson;
+  if (settings.implicit == "distance") options.implicitKind = pipeline::ImplicitKind::distance;
+  options.samples = settings.samples;
+  options.seed = settings.seed;
+  options.rotationSeed = settings.rotationSeed;
   return options;
+}
+
+void requireMeaning(const pipeline::Form& form, const CLI::App& command) {
+  const auto refuse = [&](const char* name, const std::string& why) {
+    if (command.get_option(name)->count() > 0) {
+      throw UsageError(std::string(name) + ": has no meaning for " + form.record.input.name + ", " + why);
+    }
+  };
+  if (!form.source.empty()) return;
+  if (form.mesh) {
+    for (const char* name : {"--envelope", "--margin"}) refuse(name, "whose signed distance is closed");
+  }
+  if (!form.record.mesh || form.record.mesh->kind != pipeline::ImplicitKind::poisson) {
+    refuse("--samples", "which is not sampled; it belongs to a mesh with --implicit poisson");
+  }
 }
 
 pipeline::WriteOptions writeOptions(const Settings& settings) {
@@ -202,6 +285,23 @@ pipeline::WriteOptions writeOptions(const Settings& settings) {
   cvt.relativeError = settings.relativeError;
   cvt.memoryLimit = settings.memoryLimit;
   cvt.seed = settings.seed;
+  return options;
+}
+
+pipeline::CompareOptions compareOptions(const Settings& settings) {
+  pipeline::CompareOptions options;
+  if (!settings.methods.empty()) options.methods = split(settings.methods);
+  options.resolution = settings.resolution;
+  options.iterations = settings.iterations;
+  options.delaunay.lloydIterations = settings.lloydIterations;
+  options.delaunay.odtIterations = settings.odtIterations;
+  options.delaunay.perturb = settings.perturb;
+  options.delaunay.exude = settings.exude;
+  options.delaunayTimeLimit = settings.delaunayTimeLimit;
+  options.equalTriangles = !settings.noEqualTriangles;
+  options.dualTetrahedra = !settings.noDual;
+  options.seed = settings.seed;
+  options.threads = effectiveThreads(settings);
   return options;
 }
 

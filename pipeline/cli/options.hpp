@@ -3,10 +3,12 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <optional>
 #include <string>
 
 #include <CLI/CLI.hpp>
 
+#include "voroform/pipeline/compare.hpp"
 #include "voroform/pipeline/form.hpp"
 #include "voroform/pipeline/tessellation.hpp"
 
@@ -27,6 +29,9 @@ struct Settings {
   std::string as = "auto";
   std::string envelope = "box";
   double margin = 0.02;
+  std::string implicit = "auto";
+  Index samples = 100000;
+  std::optional<std::uint64_t> rotationSeed;
 
   std::string method = "cvt3";
   Index sites = 15000;
@@ -36,6 +41,18 @@ struct Settings {
   double relativeError = 0;
   std::string formats;
   std::uint64_t memoryLimit = 0;
+  bool noAccuracy = false;
+
+  Index resolution = 50;
+  std::string methods;  // empty: all
+  int lloydIterations = 10;
+  int odtIterations = 0;
+  bool perturb = false;
+  bool exude = false;
+  double delaunayTimeLimit = 0;
+  bool noEqualTriangles = false;
+  bool noDual = false;
+  bool noRotation = false;
 
   bool json = false;
 };
@@ -45,10 +62,16 @@ void addOutputOption(CLI::App& command, Settings& settings, const std::string& d
 void addInputKindOption(CLI::App& command, Settings& settings);
 void addFormOptions(CLI::App& command, Settings& settings);
 void addTessellationOptions(CLI::App& command, Settings& settings);
+// Of commands that run several methods.
+void addCompareOptions(CLI::App& command, Settings& settings);
 
 // Threads that a run will use: the number asked for, or the machine's.
 int effectiveThreads(const Settings& settings);
 pipeline::FormOptions formOptions(const Settings& settings);
+// Throws UsageError if an option was given that has no meaning for the form that was made: an envelope for the signed
+// distance to a mesh, which is closed; a number of samples for anything but a mesh's Poisson form.
+void requireMeaning(const pipeline::Form& form, const CLI::App& command);
 pipeline::WriteOptions writeOptions(const Settings& settings);
+pipeline::CompareOptions compareOptions(const Settings& settings);
 
 }  // namespace voroform::cli

@@ -14,9 +14,11 @@ std::string number(double value) {
 
 std::string percent(double share) { return number(100 * share) + " %"; }
 
-std::string plural(std::uint64_t count, const std::string& thing) {
-  return std::to_string(count) + " " + thing + (count == 1 ? "" : "s");
+std::string plural(std::uint64_t count, const std::string& thing, const std::string& things) {
+  return std::to_string(count) + " " + (count == 1 ? thing : things);
 }
+
+std::string plural(std::uint64_t count, const std::string& thing) { return plural(count, thing, thing + "s"); }
 
 }  // namespace
 
@@ -35,6 +37,21 @@ void printForm(std::ostream& out, const pipeline::FormRecord& record) {
   if (record.input.kind == "shape") {
     out << "form: the shape " << record.input.name << '\n';
     return;
+  }
+  if (record.mesh) {
+    const mesh::MeshReadSummary& mesh = record.mesh->summary;
+    out << "mesh: " << plural(mesh.faces, "face") << ", "
+        << plural(static_cast<std::uint64_t>(mesh.components), "component");
+    if (mesh.welded > 0) out << ", " << mesh.welded << " vertices welded";
+    if (mesh.degenerate > 0) out << ", " << plural(mesh.degenerate, "triangle") << " without area left out";
+    if (mesh.unusedVertices > 0)
+      out << ", " << plural(mesh.unusedVertices, "vertex of no face", "vertices of no face") << " left out";
+    if (mesh.turnedFaces > 0) out << ", " << plural(mesh.turnedFaces, "triangle") << " turned";
+    out << '\n';
+    if (!record.poisson) {
+      out << "form: the signed distance to the mesh\n";
+      return;
+    }
   }
   if (record.points) printPoints(out, *record.points);
   if (record.poisson) {

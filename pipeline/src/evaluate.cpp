@@ -39,12 +39,13 @@ Form formOfResults(const fs::path& folder, Json& json, const fs::path& metricsPa
   Json& input = member(json, "input", metricsPath);
   if (value<std::string>(input, "kind", metricsPath) == "shape") {
     try {
-      return formFromShape(value<std::string>(input, "name", metricsPath));
+      return formFromShape(value<std::string>(input, "name", metricsPath),
+                           rotationSeed(input, metricsPath.string() + ", input"));
     } catch (const UsageError& error) {
       throw InputError(metricsPath.string() + ": " + error.what());
     }
   }
-  return formFromFile(folder / kFormFile, context);
+  return formFromFile(formFileOf(folder), context);
 }
 
 void appendNew(std::vector<std::string>& list, const std::string& text) {

@@ -10,6 +10,8 @@ namespace voroform::pipeline {
 
 namespace {
 
+constexpr const char* kDistanceKind = "distance";
+
 Json vectorJson(const Vec3& v) { return Json::array({v.x(), v.y(), v.z()}); }
 
 Json prepareJson(const points::PrepareSummary& summary) {
@@ -29,6 +31,22 @@ Json poissonJson(const implicit::PoissonSummary& summary) {
           {"tetrahedra", summary.tetrahedra},
           {"sign_turned", summary.signTurned},
           {"wrong_normal_share", summary.wrongNormalShare}};
+}
+
+Json meshJson(const MeshRecord& record) {
+  Json json = {{"vertices", record.summary.vertices},
+               {"faces", record.summary.faces},
+               {"welded", record.summary.welded},
+               {"degenerate", record.summary.degenerate},
+               {"unused_vertices", record.summary.unusedVertices},
+               {"turned_faces", record.summary.turnedFaces},
+               {"turned", record.summary.turned},
+               {"components", record.summary.components}};
+  if (record.kind == ImplicitKind::poisson) {
+    json["samples"] = record.samples;
+    json["seed"] = record.seed;
+  }
+  return json;
 }
 
 // Access to a JSON object that names the file and the key in its messages.
@@ -75,7 +93,26 @@ InputRecord inputRecord(const Reader& reader) {
   if (reader.has("format")) input.format = reader.get<std::string>("format");
   if (reader.has("sha256")) input.sha256 = reader.get<std::string>("sha256");
   if (reader.has("bytes")) input.bytes = reader.get<std::uint64_t>("bytes");
+  if (reader.has("rotation_seed")) input.rotationSeed = reader.get<std::uint64_t>("rotation_seed");
   return input;
+}
+
+MeshRecord meshRecord(const Reader& reader, bool isDistance) {
+  MeshRecord record;
+  record.summary.vertices = reader.get<std::uint64_t>("vertices");
+  record.summary.faces = reader.get<std::uint64_t>("faces");
+  record.summary.welded = reader.get<std::uint64_t>("welded");
+  record.summary.degenerate = reader.get<std::uint64_t>("degenerate");
+  record.summary.unusedVertices = reader.get<std::uint64_t>("unused_vertices");
+  record.summary.turnedFaces = reader.get<std::uint64_t>("turned_faces");
+  record.summary.turned = reader.get<bool>("turned");
+  record.summary.components = reader.get<Index>("components");
+  record.kind = isDistance ? ImplicitKind::distance : ImplicitKind::poisson;
+  if (!isDistance) {
+    record.samples = reader.get<Index>("samples");
+    record.seed = reader.get<std::uint64_t>("seed");
+  }
+  return record;
 }
 
 points::PrepareSummary prepareSummary(const Reader& reader) {
@@ -116,7 +153,14 @@ Json inputJson(const InputRecord& input) {
     json["bytes"] = input.bytes;
     json["sha256"] = input.sha256;
   }
+  if (input.rotationSeed) json["rotation_seed"] = *input.rotationSeed;
   return json;
+}
+
+std::optional<std::uint64_t> rotationSeed(const Json& input, const std::string& name) {
+  const Reader reader(input, name);
+  if (!reader.has("rotation_seed")) return std::nullopt;
+  return reader.get<std::uint64_t>("rotation_seed");
 }
 
 Json formJson(const FormRecord& record) {
@@ -130,8 +174,13 @@ Json formJson(const FormRecord& record) {
   } else {
     json["envelope"] = nullptr;
   }
+  if (record.mesh) json["mesh"] = meshJson(*record.mesh);
   if (record.points) json["points"] = prepareJson(*record.points);
-  if (record.poisson) json["implicit"] = poissonJson(*record.poisson);
+  if (record.poisson) {
+    json["implicit"] = poissonJson(*record.poisson);
+  } else if (record.mesh) {
+    json["implicit"] = {{"kind", kDistanceKind}};
+  }
   json["warnings"] = record.warnings;
   return json;
 }
@@ -161,7 +210,14 @@ FormRecord formRecord(const Json& json, const std::string& name) {
     throw InputError(name + ": the envelope's box does not agree with the options");
   }
   if (reader.has("points")) record.points = prepareSummary(reader.object("points"));
-  if (reader.has("implicit")) record.poisson = poissonSummary(reader.object("implicit"));
+  bool isDistance = false;
+  if (reader.has("implicit")) {
+    const Reader implicit = reader.object("implicit");
+    isDistance = implicit.get<std::string>("kind") == kDistanceKind;
+    if (!isDistance) record.poisson = poissonSummary(implicit);
+  }
+  if (isDistance || reader.has("mesh")) record.mesh = meshRecord(reader.object("mesh"), isDistance);
+  if (record.mesh) record.mesh->summary.format = record.input.format;
   record.warnings = reader.get<std::vector<std::string>>("warnings");
   return record;
 }

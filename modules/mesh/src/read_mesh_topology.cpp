@@ -6,7 +6,6 @@
 
 #include "disjoint_sets.hpp"
 #include "read_mesh.hpp"
-#include "voroform/core/error.hpp"
 #include "voroform/mesh/surface_locator.hpp"
 
 namespace voroform::mesh {
@@ -48,7 +47,7 @@ class Examination {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw InputError(name_ + ": " + message); }
+  [[noreturn]] void fail(const std::string& message) const { throw NotSolid(name_ + ": " + message); }
 
   std::string place(Index vertex) const {
     const Vec3& p = mesh_.vertices[at(vertex)];

@@ -19,7 +19,8 @@ enum class RandomStream : std::uint64_t {
   sampling,
   insertion,
   test,
-  surfaceSampling
+  surfaceSampling,
+  meshSampling
 };
 
 // 64 random bits for a key: SplitMix64's finalizer over the mixed key.

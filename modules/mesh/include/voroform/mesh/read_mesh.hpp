@@ -7,10 +7,16 @@
 #include <istream>
 #include <string>
 
+#include "voroform/core/error.hpp"
 #include "voroform/core/run_context.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
 
 namespace voroform::mesh {
+
+// The mesh was read but cannot bound a solid: not closed, not 2-manifold, not orientable, without volume.
+struct NotSolid : InputError {
+  using InputError::InputError;
+};
 
 struct MeshReadSummary {
   std::string format;          // e.g. "STL binary"
@@ -32,8 +38,8 @@ struct MeshReadResult {
 // .off, .obj, .ply (ascii, binary both ways), .stl (ascii, binary; equal vertices are welded). Polygons are cut into
 // fans. The mesh is examined: closed, 2-manifold, orientable, finite. Faces are turned to agree within each component;
 // then components are turned: outward, but inward (as the wall of a void) if they lie within an odd number of others.
-// Throws InputError naming the file, the line or record, and the first edge, vertex or face that is at fault;
-// allocates nothing for a declared size before the bytes are there.
+// Throws InputError naming the file, the line or record, and the first edge, vertex or face that is at fault (NotSolid
+// if what is at fault is not the file but the mesh); allocates nothing for a declared size before the bytes are there.
 //
 // If the mesh lies far from the origin its frame is shifted to near the center, such that frame and local coordinates
 // add up to the file's coordinates bit for bit (as points::prepare does for clouds); else the frame is at the origin.
