@@ -9,6 +9,7 @@ namespace voroform::cli {
 int runReconstruct(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runTessellate(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runEvaluate(const Settings& settings, const CLI::App& command, const RunContext& context);
+int runCompare(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runPoints(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runImplicit(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runInfo(const Settings& settings, const CLI::App& command, const RunContext& context);

@@ -15,23 +15,19 @@ constexpr const char* kInvalid =
 
 int makeResults(const pipeline::Form& form, const Settings& settings, const RunContext& context) {
   const pipeline::WriteOptions options = writeOptions(settings);
-  const pipeline::Tessellation tessellation = pipeline::tessellate(form, options.tessellate, context);
+  const pipeline::Tessellation tessellation =
+      pipeline::tessellate(form, options.tessellate, context, !settings.noAccuracy);
   const std::vector<std::string> names = pipeline::writeResults(form, tessellation, options, settings.output, context);
   if (!settings.quiet) {
     printForm(std::cout, form.record);
     printTessellation(std::cout, tessellation.summary);
     printMeasurement(std::cout, tessellation.complex, tessellation.measurement, form.record.points.has_value());
+    printAccuracy(std::cout, tessellation.accuracy);
     printFiles(std::cout, settings.output, names);
   }
   if (!tessellation.measurement.certificate.valid) throw MethodError(settings.output + ": " + kInvalid);
   return kExitDone;
 }
-
-bool isForm(const std::string& input) {
-  return std::filesystem::path(input).extension() == ".vtu" || pipeline::isStoredMeshForm(input);
-}
-
-bool isShape(const std::string& input) { return input.starts_with("shape:"); }
 
 }  // namespace
 
@@ -47,15 +43,7 @@ int runReconstruct(const Settings& settings, const CLI::App& command, const RunC
 }
 
 int runTessellate(const Settings& settings, const CLI::App& command, const RunContext& context) {
-  if (isForm(settings.input) || isShape(settings.input)) {
-    for (const char* name : {"--envelope", "--margin", "--as", "--implicit", "--samples", "--rotation-seed"}) {
-      if (isShape(settings.input) && std::string(name) == "--rotation-seed") continue;
-      if (command.get_option(name)->count() > 0) {
-        throw UsageError(std::string(name) + ": has no meaning for " + settings.input +
-                         (isShape(settings.input) ? ", which is closed and exact" : "; it stands in its record"));
-      }
-    }
-  }
+  requireFormOptions(settings, command);
   pipeline::checkOutputFolder(settings.output);
   cvt::requireMemory(writeOptions(settings).tessellate);
   const pipeline::Form form = pipeline::formFromInput(settings.input, formOptions(settings), context);
@@ -67,6 +55,7 @@ int runEvaluate(const Settings& settings, const CLI::App&, const RunContext& con
   const pipeline::Evaluation evaluation = pipeline::evaluate(settings.input, context);
   if (!settings.quiet) {
     printMeasurement(std::cout, evaluation.complex, evaluation.measurement, evaluation.hasCloud);
+    printAccuracy(std::cout, evaluation.accuracy);
     printFiles(std::cout, settings.input, {"metrics.json"});
   }
   if (!evaluation.measurement.certificate.valid) throw MethodError(settings.input + ": " + kInvalid);

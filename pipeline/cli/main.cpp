@@ -70,6 +70,14 @@ std::vector<Command> addCommands(CLI::App& app, Settings& settings) {
                                   "Folder that reconstruct or tessellate wrote");
   commands.push_back({evaluate, runEvaluate});
 
+  CLI::App* compare = addCommand(app, settings, "compare",
+                                 "Marching Cubes, Delaunay refinement and the CVTs on one input, measured alike",
+                                 "INPUT", "As for tessellate");
+  addOutputOption(*compare, settings, "Folder for the results");
+  addFormOptions(*compare, settings);
+  addCompareOptions(*compare, settings);
+  commands.push_back({compare, runCompare});
+
   CLI::App* info = addCommand(app, settings, "info", "What a file is, its size, its validity", "FILE",
                               "A point cloud, a mesh, a form (.vtu) or cells (.vtu)");
   info->add_flag("--json", settings.json, "Print JSON");

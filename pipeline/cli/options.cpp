@@ -251,6 +251,24 @@ pipeline::FormOptions formOptions(const Settings& settings) {
   return options;
 }
 
+bool isForm(const std::string& input) {
+  return std::filesystem::path(input).extension() == ".vtu" || pipeline::isStoredMeshForm(input);
+}
+
+bool isShape(const std::string& input) { return input.starts_with("shape:"); }
+
+void requireFormOptions(const Settings& settings, const CLI::App& command) {
+  if (isForm(settings.input) || isShape(settings.input)) {
+    for (const char* name : {"--envelope", "--margin", "--as", "--implicit", "--samples", "--rotation-seed"}) {
+      if (isShape(settings.input) && std::string(name) == "--rotation-seed") continue;
+      if (command.get_option(name)->count() > 0) {
+        throw UsageError(std::string(name) + ": has no meaning for " + settings.input +
+                         (isShape(settings.input) ? ", which is closed and exact" : "; it stands in its record"));
+      }
+    }
+  }
+}
+
 void requireMeaning(const pipeline::Form& form, const CLI::App& command) {
   const auto refuse = [&](const char* name, const std::string& why) {
     if (command.get_option(name)->count() > 0) {

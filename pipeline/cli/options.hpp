@@ -68,6 +68,11 @@ void addCompareOptions(CLI::App& command, Settings& settings);
 // Threads that a run will use: the number asked for, or the machine's.
 int effectiveThreads(const Settings& settings);
 pipeline::FormOptions formOptions(const Settings& settings);
+// Whether the input is a form on disk, or a named shape.
+bool isForm(const std::string& input);
+bool isShape(const std::string& input);
+// Throws UsageError if an option was given that the input, a form or a shape, leaves no choice of.
+void requireFormOptions(const Settings& settings, const CLI::App& command);
 // Throws UsageError if an option was given that has no meaning for the form that was made: an envelope for the signed
 // distance to a mesh, which is closed; a number of samples for anything but a mesh's Poisson form.
 void requireMeaning(const pipeline::Form& form, const CLI::App& command);

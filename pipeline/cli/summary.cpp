@@ -92,6 +92,14 @@ void printMeasurement(std::ostream& out, const mesh::PolyhedralComplex& complex,
       << number(measurement.regularity.all.max) << ", optimum " << number(metrics::kOptimalRegularity) << '\n';
 }
 
+void printAccuracy(std::ostream& out, const std::optional<metrics::Accuracy>& accuracy) {
+  if (!accuracy) return;
+  out << "accuracy: mean distance " << number(accuracy->dmean) << " (" << percent(accuracy->dmean / accuracy->cellSize)
+      << " of the cell size), root mean square " << number(accuracy->drmse) << ", largest " << number(accuracy->dmax)
+      << "; normals off by " << number(accuracy->nmean) << " on average, root mean square " << number(accuracy->nrmse)
+      << " (radians)\n";
+}
+
 void printFiles(std::ostream& out, const std::filesystem::path& folder, const std::vector<std::string>& names) {
   out << "wrote " << folder.string() << ":";
   for (const std::string& name : names) out << ' ' << name;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <optional>
 #include <ostream>
 #include <string>
 #include <vector>
@@ -16,6 +17,8 @@ void printForm(std::ostream& out, const pipeline::FormRecord& record);
 void printTessellation(std::ostream& out, const cvt::TessellateSummary& summary);
 void printMeasurement(std::ostream& out, const mesh::PolyhedralComplex& complex,
                       const pipeline::Measurement& measurement, bool hasCloud);
+// Nothing if there is none.
+void printAccuracy(std::ostream& out, const std::optional<metrics::Accuracy>& accuracy);
 void printFiles(std::ostream& out, const std::filesystem::path& folder, const std::vector<std::string>& names);
 
 }  // namespace voroform::cli

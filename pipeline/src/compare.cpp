@@ -15,7 +15,6 @@ namespace {
 
 constexpr Index kLeastResolution = 4;
 constexpr Index kMostResolution = 1000;
-constexpr const char* kNotOptimized = "cvt1@0";
 
 bool contains(const std::vector<std::string>& list, std::string_view name) {
   return std::find(list.begin(), list.end(), name) != list.end();
@@ -129,11 +128,6 @@ Comparing prepare(const Form& form, Comparison& result, const RunContext& contex
 }
 
 }  // namespace
-
-const std::vector<std::string>& methodNames() {
-  static const std::vector<std::string> names = {"mc", "delaunay", kNotOptimized, "cvt1", "cvt2", "cvt3"};
-  return names;
-}
 
 std::vector<std::string> validate(const CompareOptions& options) {
   std::vector<std::string> violations;

@@ -11,6 +11,9 @@
 
 namespace voroform::pipeline {
 
+// The method that clips the initial sites.
+inline constexpr const char* kNotOptimized = "cvt1@0";
+
 inline bool isCvt(std::string_view method) { return method.starts_with("cvt"); }
 
 // Progress and warnings under a name: "mc: certificate".

@@ -101,7 +101,7 @@ std::vector<MethodOutcome> equalTriangles(Comparing& comparing, const baselines:
                                           const std::vector<MethodOutcome>& methods, const RunContext& context) {
   std::vector<MethodOutcome> results;
   for (const MethodOutcome& cvt : methods) {
-    if (!isCvt(cvt.method) || cvt.method == "cvt1@0" || !cvt.failure.empty()) continue;
+    if (!isCvt(cvt.method) || cvt.method == kNotOptimized || !cvt.failure.empty()) continue;
     const std::int64_t target = cvt.boundaryTriangles;
     for (const MethodOutcome& rule : methods) {
       if (isCvt(rule.method)) continue;

@@ -84,6 +84,7 @@ Evaluation evaluate(const fs::path& folder, const RunContext& context) {
   result.complex = mesh::readCellsVtu(folder / kCellsFile);
   const Stopwatch watch;
   result.measurement = measure(result.complex, form, seed, recording);
+  result.accuracy = measureAccuracy(result.complex, form, result.measurement, seed, recording);
   const double secondsMetrics = watch.seconds();
   result.hasCloud = form.record.points.has_value();
 

@@ -162,7 +162,9 @@ Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options,
   warnOfClipping(result.summary, recording);
   watch.restart();
   result.measurement = measure(result.complex, form, options.seed, recording);
-  static_cast<void>(withAccuracy);
+  if (withAccuracy) {
+    result.accuracy = measureAccuracy(result.complex, form, result.measurement, options.seed, recording);
+  }
   result.secondsMetrics = watch.seconds();
   return result;
 }
