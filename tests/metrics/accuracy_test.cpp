@@ -6,7 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <optional>
 
+#include "accuracy_lines.hpp"
 #include "support/complexes.hpp"
 #include "support/marching_cubes.hpp"
 #include "support/surface_meshes.hpp"
@@ -157,6 +159,76 @@ double bruteForceDistance(const mesh::TriangleMesh& mesh, const Vec3& p) {
     if (above) best = std::min(best, std::abs(height));
   }
   return best;
+}
+
+Vec3 randomDirection(std::uint64_t index) { return randomRotation(index) * Vec3::UnitX(); }
+
+TEST(AccuracyLines, CrossingsOfAMeshByExhaustion) {
+  const mesh::TriangleMesh polyhedron = icosphere(2, 1);
+  const LineCrossings crossings(polyhedron);
+  int hits = 0;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Vec3 origin(3 * random(3 * i) - 1.5, 3 * random(3 * i + 1) - 1.5, 3 * random(3 * i + 2) - 1.5);
+    const Vec3 direction = randomDirection(i);
+    double expected = std::numeric_limits<double>::infinity();
+    for (const auto& triangle : polyhedron.triangles) {
+      const auto corner = [&](std::size_t k) { return polyhedron.vertices[static_cast<std::size_t>(triangle[k])]; };
+      Mat3 system;
+      system << corner(1) - corner(0), corner(2) - corner(0), -direction;
+      const Vec3 solution = system.inverse() * (origin - corner(0));
+      if (solution[0] < 0 || solution[1] < 0 || solution[0] + solution[1] > 1) continue;
+      expected = std::min(expected, std::abs(solution[2]));
+    }
+    for (const double guess : {0.0, 0.2, 5.0}) {
+      const std::optional<double> found = crossings.nearest({origin, direction, guess, 1});
+      ASSERT_EQ(found.has_value(), expected <= 1) << i;
+      if (found) {
+        EXPECT_NEAR(*found, expected, kRounding);
+      }
+    }
+    if (expected <= 1) ++hits;
+  }
+  EXPECT_GT(hits, 100);
+  EXPECT_LT(hits, 299);
+}
+
+TEST(AccuracyLines, LinesThroughEdgesAndCornersCross) {
+  const mesh::TriangleMesh polyhedron = icosphere(1, 1);
+  const LineCrossings crossings(polyhedron);
+  for (const auto& [a, b, c] : polyhedron.triangles) {
+    const Vec3& corner = polyhedron.vertices[static_cast<std::size_t>(a)];
+    const Vec3 middle = (corner + polyhedron.vertices[static_cast<std::size_t>(b)]) / 2;
+    for (const Vec3& place : {corner, middle}) {
+      const std::optional<double> found = crossings.nearest({0.5 * place, place.normalized(), 0, 2});
+      ASSERT_TRUE(found.has_value());
+      EXPECT_NEAR(*found, 0.5 * place.norm(), kRounding);
+    }
+  }
+}
+
+TEST(AccuracyLines, CrossingsOfASphere) {
+  const implicit::ImplicitPtr sphere = implicit::sphere(1);
+  int hits = 0;
+  for (std::uint64_t i = 0; i < 300; ++i) {
+    const Vec3 origin = (0.3 + random(2 * i)) * randomDirection(i);
+    const Vec3 direction = randomDirection(1000 + i);
+    // ‖origin + t·direction‖ = 1
+    const double half = origin.dot(direction);
+    const double square = half * half - origin.squaredNorm() + 1;
+    // Where the line all but touches, both crossings may lie within a step.
+    if (square < 0.01) continue;
+    const double expected = std::min(std::abs(-half + std::sqrt(square)), std::abs(-half - std::sqrt(square)));
+    for (const double guess : {0.0, expected, 10.0}) {
+      const std::optional<double> found = crossingOfForm(*sphere, {origin, direction, guess, 0.7}, 0.4);
+      ASSERT_EQ(found.has_value(), expected <= 0.7) << i;
+      if (found) {
+        EXPECT_NEAR(*found, expected, 10 * kRounding);
+      }
+    }
+    if (expected <= 0.7) ++hits;
+  }
+  EXPECT_GT(hits, 150);
+  EXPECT_LT(hits, 280);
 }
 
 TEST(Accuracy, ConcentricSpheres) {

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
+#include <span>
 #include <string>
 
 #include "surface_cvt_cells.hpp"
@@ -24,8 +24,6 @@ constexpr double kMostSamples = 1e8;
 // Sites move by this multiple of the way to their centroids. On a plane the energy falls with any factor between 0 and
 // 2; above 1 the long waves of the density, which Lloyd's method damps slowly, fall faster (Xiao 2010).
 constexpr double kRelaxation = 1.6;
-// A mean normal shorter than this belongs to a cell folded over an edge: no direction to project along.
-constexpr double kLeastMeanNormal = 0.1;
 
 using Corners = std::array<Vec3, 3>;
 
@@ -82,51 +80,20 @@ Vec3 nearestInTriangle(const Corners& corners, const Vec3& p) {
   return a + vb / sum * ab + vc / sum * ac;
 }
 
-// Where the line through p along a direction crosses the triangle: the distance from p in multiples of the direction.
-std::optional<double> crossing(const Corners& corners, const Vec3& p, const Vec3& direction) {
-  const Vec3 a = corners[0] - p;
-  const Vec3 b = corners[1] - p;
-  const Vec3 c = corners[2] - p;
-  const double u = direction.dot(b.cross(c));
-  const double v = direction.dot(c.cross(a));
-  const double w = direction.dot(a.cross(b));
-  const double sum = u + v + w;
-  if (sum == 0) return std::nullopt;
-  if ((u < 0 || v < 0 || w < 0) && (u > 0 || v > 0 || w > 0)) return std::nullopt;
-  return direction.dot(u * a + v * b + w * c) / (sum * direction.squaredNorm());
-}
-
 // A place on the mesh.
 struct Place {
   Vec3 point = Vec3::Zero();
   Index triangle = kNone;
 };
 
-// Brings a target back onto the triangles of a site's cell: along their mean normal, so that samples don't gather on
-// the edges of concave parts as nearest points would; where that line meets none of them, to the nearest point.
-Place backOnMesh(const mesh::TriangleMesh& mesh, const Facets& facets, std::span<const SurfacePiece> pieces,
-                 const Vec3& target) {
-  double area = 0;
-  Vec3 normal = Vec3::Zero();
-  for (const SurfacePiece& piece : pieces) {
-    area += piece.area;
-    normal += piece.area * facets.normals[static_cast<std::size_t>(piece.triangle)];
-  }
+// The point nearest to the target on the triangles of a site's cell. It lies inside one of them but where the mesh is
+// saddle-shaped or folded, as the centroid of a cell lies on the side that the cell bends around.
+Place backOnMesh(const mesh::TriangleMesh& mesh, std::span<const SurfacePiece> pieces, const Vec3& target) {
   Place best;
   double bestDistance = std::numeric_limits<double>::infinity();
-  if (normal.norm() > kLeastMeanNormal * area) {
-    normal.normalize();
-    for (const SurfacePiece& piece : pieces) {
-      const std::optional<double> t = crossing(cornersOf(mesh, piece.triangle), target, normal);
-      if (!t || std::abs(*t) >= bestDistance) continue;
-      bestDistance = std::abs(*t);
-      best = {target + *t * normal, piece.triangle};
-    }
-    if (best.triangle != kNone) return best;
-  }
   for (const SurfacePiece& piece : pieces) {
     const Vec3 point = nearestInTriangle(cornersOf(mesh, piece.triangle), target);
-    const double distance = (point - target).norm();
+    const double distance = (point - target).squaredNorm();
     if (distance >= bestDistance) continue;
     bestDistance = distance;
     best = {point, piece.triangle};
@@ -134,8 +101,8 @@ Place backOnMesh(const mesh::TriangleMesh& mesh, const Facets& facets, std::span
   return best;
 }
 
-void moveToCentroids(const mesh::TriangleMesh& mesh, const Facets& facets, const SurfaceCells& cells, double relaxation,
-                     SurfaceSites& sites, const RunContext& context) {
+void moveToCentroids(const mesh::TriangleMesh& mesh, const SurfaceCells& cells, double relaxation, SurfaceSites& sites,
+                     const RunContext& context) {
   parallelFor(context, sites.points.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const std::span pieces(cells.pieces.data() + cells.offsets[i], cells.offsets[i + 1] - cells.offsets[i]);
@@ -147,7 +114,7 @@ void moveToCentroids(const mesh::TriangleMesh& mesh, const Facets& facets, const
       }
       // A site whose place another one has already owns nothing and stays.
       if (area <= 0) continue;
-      const Place place = backOnMesh(mesh, facets, pieces, sites.points[i] + relaxation / area * moment);
+      const Place place = backOnMesh(mesh, pieces, sites.points[i] + relaxation / area * moment);
       sites.points[i] = place.point;
       sites.triangles[i] = place.triangle;
     }
@@ -213,7 +180,7 @@ MeshSamples surfaceCvt(const mesh::TriangleMesh& mesh, const SurfaceCvtOptions& 
     const SurfaceCells cells = surfaceCells(mesh, facets, sites, options.spacing, context);
     if (iteration == 0) firstEnergy = energyOf(cells);
     const bool last = iteration + 1 == options.iterations;
-    moveToCentroids(mesh, facets, cells, last ? 1 : kRelaxation, sites, context);
+    moveToCentroids(mesh, cells, last ? 1 : kRelaxation, sites, context);
   }
   if (firstEnergy > 0) {
     const double energy = energyOf(surfaceCells(mesh, facets, sites, options.spacing, context));
