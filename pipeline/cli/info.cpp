@@ -109,7 +109,11 @@ Json describeMesh(const fs::path& path, const RunContext& context) {
                      {"unused_vertices", summary.unusedVertices},
                      {"turned_triangles", summary.turnedFaces}});
   } catch (const mesh::NotSolid& problem) {
-    json.update(Json{{"closed", false}, {"problem", problem.what()}});
+    json.update(Json{{"format", problem.summary.format},
+                     {"vertices", problem.summary.vertices},
+                     {"faces", problem.summary.faces},
+                     {"closed", false},
+                     {"problem", problem.what()}});
   }
   return json;
 }

@@ -47,7 +47,7 @@ class Examination {
   }
 
  private:
-  [[noreturn]] void fail(const std::string& message) const { throw NotSolid(name_ + ": " + message); }
+  [[noreturn]] void fail(const std::string& message) const { throw NotSolid(name_ + ": " + message, raw_.summary); }
 
   std::string place(Index vertex) const {
     const Vec3& p = mesh_.vertices[at(vertex)];

@@ -6,17 +6,13 @@
 #include <filesystem>
 #include <istream>
 #include <string>
+#include <utility>
 
 #include "voroform/core/error.hpp"
 #include "voroform/core/run_context.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
 
 namespace voroform::mesh {
-
-// The mesh was read but cannot bound a solid: not closed, not 2-manifold, not orientable, without volume.
-struct NotSolid : InputError {
-  using InputError::InputError;
-};
 
 struct MeshReadSummary {
   std::string format;          // e.g. "STL binary"
@@ -28,6 +24,12 @@ struct MeshReadSummary {
   std::uint64_t turnedFaces = 0;     // triangles turned to agree with their neighbors or to make a component outward
   Index components = 0;              // by shared edges
   bool turned = false;               // the whole mesh was inside out and was turned
+};
+
+// The mesh was read but cannot bound a solid: not closed, not 2-manifold, not orientable, without volume.
+struct NotSolid : InputError {
+  NotSolid(const std::string& message, MeshReadSummary what) : InputError(message), summary(std::move(what)) {}
+  MeshReadSummary summary;
 };
 
 struct MeshReadResult {
