@@ -10,6 +10,8 @@ int runReconstruct(const Settings& settings, const CLI::App& command, const RunC
 int runTessellate(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runEvaluate(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runCompare(const Settings& settings, const CLI::App& command, const RunContext& context);
+int runRank(const Settings& settings, const CLI::App& command, const RunContext& context);
+int runReproduce(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runPoints(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runImplicit(const Settings& settings, const CLI::App& command, const RunContext& context);
 int runInfo(const Settings& settings, const CLI::App& command, const RunContext& context);

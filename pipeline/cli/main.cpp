@@ -78,6 +78,14 @@ std::vector<Command> addCommands(CLI::App& app, Settings& settings) {
   addCompareOptions(*compare, settings);
   commands.push_back({compare, runCompare});
 
+  CLI::App* rank = app.add_subcommand("rank", "Compare the methods on many inputs and rank them");
+  addRankOptions(*rank, settings);
+  commands.push_back({rank, runRank});
+
+  CLI::App* reproduce = app.add_subcommand("reproduce", "One of the thesis's tables, its figures beside ours");
+  addReproduceOptions(*reproduce, settings);
+  commands.push_back({reproduce, runReproduce});
+
   CLI::App* info = addCommand(app, settings, "info", "What a file is, its size, its validity", "FILE",
                               "A point cloud, a mesh, a form (.vtu) or cells (.vtu)");
   info->add_flag("--json", settings.json, "Print JSON");

@@ -60,13 +60,6 @@ CLI::Validator oneOf(const std::vector<std::string>& names) {
   return validator;
 }
 
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  std::stringstream stream(list);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(CLI::detail::trim_copy(part));
-  return parts;
-}
-
 constexpr pipeline::ExtraFormat kFormats[] = {pipeline::ExtraFormat::obj, pipeline::ExtraFormat::off,
                                               pipeline::ExtraFormat::stl, pipeline::ExtraFormat::adjacency};
 
@@ -93,6 +86,13 @@ std::vector<std::string> formatNames() {
 }
 
 }  // namespace
+
+std::vector<std::string> split(const std::string& list) {
+  std::vector<std::string> parts;
+  std::stringstream stream(list);
+  for (std::string part; std::getline(stream, part, ',');) parts.push_back(CLI::detail::trim_copy(part));
+  return parts;
+}
 
 void addCommonOptions(CLI::App& command, Settings& settings) {
   command.add_option("--threads", settings.threads, "Most threads to use; 0: as many as the machine has")
@@ -230,6 +230,46 @@ void addCompareOptions(CLI::App& command, Settings& settings) {
       "--no-rotation", settings.noRotation,
       "Leave shapes and meshes as they lie; else they are turned by a rotation that follows from the seed, "
       "for Marching Cubes is exact on planes along its grid");
+}
+
+void addRankOptions(CLI::App& command, Settings& settings) {
+  command.add_option("INPUT", settings.inputs, "Inputs as for compare; none with --experiment");
+  addOutputOption(command, settings, "Folder for the comparisons and rankings; what is there already is taken");
+  command
+      .add_option("--experiment", settings.experiment,
+                  "A TOML file with inputs, methods, resolutions and seeds; options on the command line come first")
+      ->type_name("FILE");
+  command.add_option("--data", settings.data, "Folder of the experiment's files")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  command.add_flag("--keep-tessellations", settings.keepTessellations,
+                   "Keep all cells, surfaces and forms as well, which takes much room");
+  addFormOptions(command, settings);
+  addCompareOptions(command, settings);
+}
+
+void addReproduceOptions(CLI::App& command, Settings& settings) {
+  command.add_option("TABLE", settings.table, "3.1, 5.1, 5.2, 5.3, 5.4 or figure-5.7 (5.7)")->required();
+  addOutputOption(command, settings, "Folder for the results");
+  command.add_option("--data", settings.data, "Folder where datasets-scripts/ put the scans and meshes")
+      ->type_name("FOLDER")
+      ->capture_default_str();
+  command
+      .add_option("--data-sets", settings.dataSets,
+                  "Rows of the table to reproduce, by the thesis's names, separated by commas; all if not given")
+      ->type_name("LIST");
+  command.add_option("--iterations", settings.iterations, "Iterations of the CVTs' optimizer")
+      ->check(inRange(0, 1'000'000))
+      ->capture_default_str();
+  command
+      .add_option("--delaunay-time-limit", settings.delaunayTimeLimit,
+                  "Seconds after which a run of Delaunay refinement is given up; 0: never")
+      ->check(inRange(0.0, 1e9))
+      ->default_val(600);
+  command
+      .add_option("--ranking", settings.ranking,
+                  "For figure 5.7: a folder that rank wrote; without it the thirty meshes are compared")
+      ->type_name("FOLDER");
 }
 
 int effectiveThreads(const Settings& settings) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include <CLI/CLI.hpp>
 
@@ -54,6 +55,14 @@ struct Settings {
   bool noDual = false;
   bool noRotation = false;
 
+  std::vector<std::string> inputs;
+  std::string experiment;
+  std::string data = "data";
+  bool keepTessellations = false;
+  std::string table;
+  std::string dataSets;
+  std::string ranking;
+
   bool json = false;
 };
 
@@ -64,6 +73,8 @@ void addFormOptions(CLI::App& command, Settings& settings);
 void addTessellationOptions(CLI::App& command, Settings& settings);
 // Of commands that run several methods.
 void addCompareOptions(CLI::App& command, Settings& settings);
+void addRankOptions(CLI::App& command, Settings& settings);
+void addReproduceOptions(CLI::App& command, Settings& settings);
 
 // Threads that a run will use: the number asked for, or the machine's.
 int effectiveThreads(const Settings& settings);
@@ -78,5 +89,7 @@ void requireFormOptions(const Settings& settings, const CLI::App& command);
 void requireMeaning(const pipeline::Form& form, const CLI::App& command);
 pipeline::WriteOptions writeOptions(const Settings& settings);
 pipeline::CompareOptions compareOptions(const Settings& settings);
+// The parts of a list separated by commas, without spaces around them.
+std::vector<std::string> split(const std::string& list);
 
 }  // namespace voroform::cli
