@@ -372,7 +372,7 @@ mesh::PolyhedralComplex openBlock() {
 }
 
 TEST(Accuracy, ShiftedPlaneInAnEnvelope) {
-  for (const double shift : {0.1, -0.25}) {
+  for (const double shift : {0.1, -0.22}) {
     const Slab other = slab(3 + shift);
     const double depth = std::abs(shift);
     AccuracyPairs pairs;
@@ -385,10 +385,14 @@ TEST(Accuracy, ShiftedPlaneInAnEnvelope) {
     EXPECT_NEAR(result.nmean, 0, kBracket);
     EXPECT_NEAR(result.nrmse, 0, kBracket);
     EXPECT_EQ(result.fromBoundary.unfound, 0);
-    // Seen from below S, samples nearer to the envelope's sides than to S are left out; from above none are.
+    // Seen from below the other surface, samples nearer to the envelope's sides are left out; from above none are. Of
+    // the 30 columns of samples of S two on either side are then nearer than 0.22.
     const auto all = static_cast<double>(result.fromBoundary.samples + result.fromBoundary.envelope);
     const double inner = shift > 0 ? std::pow(3 - 2 * shift, 2) / 9 : 1;
     EXPECT_NEAR(static_cast<double>(result.fromBoundary.samples) / all, inner, 0.02);
+    EXPECT_EQ(result.fromForm.samples, shift > 0 ? 900 : 26 * 26);
+    EXPECT_EQ(result.fromForm.samples + result.fromForm.envelope, 900);
+    EXPECT_EQ(static_cast<std::int64_t>(pairs.fromForm.size()), result.fromForm.samples);
     EXPECT_EQ(static_cast<std::int64_t>(pairs.fromBoundary.size()), result.fromBoundary.samples);
     EXPECT_NEAR(result.normalLine.mean, depth, kBracket);
     EXPECT_EQ(result.normalLine.misses, 0);

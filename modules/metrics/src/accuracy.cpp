@@ -31,31 +31,46 @@ struct Measurement {
   std::optional<double> alongNormal;
 };
 
-// The boundary's triangles off the envelope, without those of no area, which have no normal.
+// The boundary's triangles without those of no area, which have no normal; first those off the envelope.
 struct Boundary {
   mesh::TriangleMesh mesh;
   std::vector<Vec3> normals;
+  std::size_t offEnvelope = 0;
+
+  bool onEnvelope(Index triangle) const { return static_cast<std::size_t>(triangle) >= offEnvelope; }
 };
 
-Boundary measuredBoundary(const mesh::PolyhedralComplex& complex) {
+Boundary boundaryOf(const mesh::PolyhedralComplex& complex) {
   mesh::BoundarySurface surface = mesh::boundarySurface(complex);
   Boundary result;
-  result.mesh.frame = surface.mesh.frame;
-  for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t) {
-    const auto face = static_cast<std::size_t>(surface.sourceFaces[t]);
-    if (complex.faceTags[face] == mesh::FaceTag::envelope) continue;
-    const auto& triangle = surface.mesh.triangles[t];
-    const auto corner = [&](std::size_t k) -> const Vec3& {
-      return surface.mesh.vertices[static_cast<std::size_t>(triangle[k])];
-    };
-    const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
-    const double length = normal.norm();
-    if (!(length > 0)) continue;
-    result.mesh.triangles.push_back(triangle);
-    result.normals.push_back(normal / length);
+  for (const mesh::FaceTag tag : {mesh::FaceTag::surface, mesh::FaceTag::envelope}) {
+    for (std::size_t t = 0; t < surface.mesh.triangles.size(); ++t) {
+      if (complex.faceTags[static_cast<std::size_t>(surface.sourceFaces[t])] != tag) continue;
+      const auto& triangle = surface.mesh.triangles[t];
+      const auto corner = [&](std::size_t k) -> const Vec3& {
+        return surface.mesh.vertices[static_cast<std::size_t>(triangle[k])];
+      };
+      const Vec3 normal = (corner(1) - corner(0)).cross(corner(2) - corner(0));
+      const double length = normal.norm();
+      if (!(length > 0)) continue;
+      result.mesh.triangles.push_back(triangle);
+      result.normals.push_back(normal / length);
+    }
+    if (tag == mesh::FaceTag::surface) result.offEnvelope = result.mesh.triangles.size();
   }
+  result.mesh.frame = surface.mesh.frame;
   result.mesh.vertices = std::move(surface.mesh.vertices);
   return result;
+}
+
+// Regular samples of the triangles off the envelope, whose numbers are the same in the whole boundary.
+MeshSamples samplesOf(const Boundary& boundary, const AccuracyOptions& options, const RunContext& context) {
+  mesh::TriangleMesh measured = boundary.mesh;
+  measured.triangles.resize(boundary.offEnvelope);
+  SurfaceCvtOptions sampling;
+  sampling.spacing = options.cellSize / kSamplesPerCellEdge;
+  sampling.seed = options.seed;
+  return surfaceCvt(measured, sampling, context);
 }
 
 // In [0, π]; precise for small angles too.
@@ -80,7 +95,8 @@ std::vector<Measurement> measureFromForm(const SurfaceSamples& samples, const Bo
       const Vec3& normal = boundary.normals[static_cast<std::size_t>(hit.triangle)];
       Measurement& m = result[i];
       m.pair = {p, hit.point, hit.distance, angleBetween(samples.normals[i], normal)};
-      m.outcome = Outcome::found;
+      m.outcome = boundary.onEnvelope(hit.triangle) ? Outcome::envelope : Outcome::found;
+      if (m.outcome == Outcome::envelope) continue;
       SampleLine line = {p, samples.normals[i], 0, reach};
       line.guess = planeAlong(line, hit.point, normal);
       m.alongNormal = crossings.nearest(line);
@@ -208,24 +224,25 @@ Accuracy accuracy(const mesh::PolyhedralComplex& complex, const implicit::Implic
                   AccuracyPairs* pairs) {
   requireSamples(samples, options);
   const Stopwatch watch;
-  const Boundary boundary = measuredBoundary(complex);
-  if (boundary.mesh.triangles.empty()) {
+  const Boundary boundary = boundaryOf(complex);
+  if (boundary.offEnvelope == 0) {
     throw MethodError("accuracy: the tessellation's boundary has no face off the envelope to measure");
   }
   const double reach = kLineReach * options.cellSize;
   const std::vector<Measurement> fromForm = measureFromForm(samples, boundary, reach, context);
   const double secondsFromForm = watch.seconds();
 
-  SurfaceCvtOptions sampling;
-  sampling.spacing = options.cellSize / kSamplesPerCellEdge;
-  sampling.seed = options.seed;
-  const MeshSamples boundarySamples = surfaceCvt(boundary.mesh, sampling, context);
+  const MeshSamples boundarySamples = samplesOf(boundary, options, context);
   const std::vector<Measurement> fromBoundary =
       measureFromBoundary(boundarySamples, boundary, f, options.cellSize, context);
 
   Accuracy result;
   result.fromForm = summarize(fromForm, samples.variation);
   result.fromBoundary = summarize(fromBoundary, boundarySamples.variation);
+  if (result.fromForm.samples == 0) {
+    throw MethodError("accuracy: the nearest point of the boundary lies on the envelope for each of the form's " +
+                      std::to_string(fromForm.size()) + " samples");
+  }
   if (result.fromBoundary.samples == 0) {
     throw MethodError("accuracy: no point of the form's surface lies near any of the boundary's " +
                       std::to_string(fromBoundary.size()) + " samples");

@@ -30,7 +30,7 @@ struct DirectedAccuracy {
   double variation = 0;      // of the sample set: see SurfaceSamples
   std::int64_t unfound = 0;  // samples for which no nearest point was found; they count in no mean and are reported
   // Samples whose nearest point lies on the envelope, as happens at the rim of an open scan; they count in no mean
-  // either. Always 0 in the direction from the form, whose nearest points are on faces off the envelope.
+  // either.
   std::int64_t envelope = 0;
 };
 
@@ -71,10 +71,11 @@ struct AccuracyPairs {
 };
 
 // `samples` are those of S (particleSamples with spacing h/3): made once, used for every method. Boundary faces and
-// parts of S on the envelope are left out on both sides: samples of S are compared with faces off the envelope only,
-// and samples of these faces whose nearest point of S lies on the envelope are left out. `pairs` may be null. The same
-// bits for any number of threads. Throws UsageError if there are no samples of S or h is not above 0, MethodError if
-// the boundary has no face off the envelope or S is nowhere near it.
+// parts of S on the envelope are left out on both sides: no samples are taken there, and samples whose nearest point on
+// the other surface lies there are left out (near the rim, which facets of a tessellation count as envelope is a matter
+// of their tags, not of their shape). `pairs` may be null. The same bits for any number of threads. Throws UsageError
+// if there are no samples of S or h is not above 0, MethodError if the boundary has no face off the envelope or one
+// surface is nowhere near the other.
 Accuracy accuracy(const mesh::PolyhedralComplex& complex, const implicit::ImplicitFunction& f,
                   const SurfaceSamples& samples, const AccuracyOptions& options, const RunContext& context,
                   AccuracyPairs* pairs = nullptr);
