@@ -175,6 +175,29 @@ TEST(MarchingCubes, CellsAreTheCubesWithAnInsideCorner) {
             384);
 }
 
+// f vanishes at corners, where several edges' roots meet in one point: their vertices stay apart.
+TEST(MarchingCubes, IsValidWhereTheSurfacePassesThroughCorners) {
+  class Octahedron final : public implicit::ImplicitFunction {
+   public:
+    double value(const Vec3& p) const override { return p.cwiseAbs().sum() - 1; }
+    Vec3 gradient(const Vec3& p) const override { return p.array().sign().matrix(); }
+    Box3 bounds() const override { return {Vec3::Constant(-1), Vec3::Constant(1)}; }
+  };
+  const CubeGrid grid{Vec3::Constant(-1.125), 0.125, {18, 18, 18}};
+  const MarchingCubesResult result = marchingCubes(Octahedron(), {}, grid, {}, {});
+  const mesh::Certificate certificate = expectValid(result.complex);
+  EXPECT_EQ(certificate.components, 1);
+  EXPECT_EQ(certificate.eulerCharacteristic, 2);
+  EXPECT_NEAR(certificate.volume, 4.0 / 3, 0.02);
+  for (const mesh::CellMoments& cell : mesh::cellMoments(result.complex, {})) EXPECT_GT(cell.volume, 0);
+  // The vertices around a corner differ by more than rounding.
+  std::vector<Vec3> vertices = result.complex.vertices;
+  std::sort(vertices.begin(), vertices.end(), [](const Vec3& a, const Vec3& b) {
+    return std::lexicographical_compare(a.data(), a.data() + 3, b.data(), b.data() + 3);
+  });
+  for (std::size_t v = 1; v < vertices.size(); ++v) EXPECT_GT((vertices[v] - vertices[v - 1]).norm(), 1e-8);
+}
+
 TEST(MarchingCubes, TagsTheEnvelope) {
   const auto f = implicit::enveloped(implicit::sphere(1), Box3(Vec3(-2, -2, -2), Vec3(2, 2, 0.3)));
   const MarchingCubesResult result = tessellate(*f, 24);
