@@ -153,6 +153,16 @@ void removeTessellations(const fs::path& folder, const std::vector<std::string>&
   }
 }
 
+// Messages of a run say whose they are.
+RunContext named(const RunContext& context, const std::string& name) {
+  RunContext result = context;
+  if (!context.log) return result;
+  result.log = [log = context.log, name](LogLevel level, std::string_view message) {
+    log(level, name + ": " + std::string(message));
+  };
+  return result;
+}
+
 void compareInput(const RankOptions& options, const fs::path& folder, const Json& key, RankedRun& run,
                   const RunContext& context) {
   // An earlier record would vouch for files that are about to change.
@@ -209,7 +219,7 @@ Rankings rank(const RankOptions& options, const fs::path& folder, const RunConte
         continue;
       }
       context.info(counter + ": comparing");
-      compareInput(options, folder / run.folder, key, run, context);
+      compareInput(options, folder / run.folder, key, run, named(context, run.folder));
     } catch (const Cancelled&) {
       throw;
     } catch (const EnvironmentError&) {

@@ -198,7 +198,7 @@ void reproduceBodies(const std::vector<PublishedFigure>& published, Reproduction
     reproduced.ours = regularityOfBody(figure.dataSet);
     result.figures.push_back(std::move(reproduced));
   }
-  result.remarks.emplace_back("Published digits are cut off, not rounded.");
+  result.remarks.emplace_back("Published to seven decimals.");
 }
 
 // 1 if the statement holds in the ranking, else 0; nothing if it cannot be told.

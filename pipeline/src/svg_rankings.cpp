@@ -80,14 +80,14 @@ class Drawing {
   std::string body_;
 };
 
+// Of all places that there are in the experiment, so that one legend serves all tables.
 const char* colorOf(std::size_t place, std::size_t places) {
-  // The last place has the last color, however many there are.
   if (places <= 1) return kColors.front();
   return kColors[(place * (kColors.size() - 1) + (places - 1) / 2) / (places - 1)];
 }
 
 // Stacked bars: how often each method has each place, the first at the bottom.
-void drawBars(Drawing& drawing, const CriterionRanking& ranking, double left, double top) {
+void drawBars(Drawing& drawing, const CriterionRanking& ranking, std::size_t places, double left, double top) {
   const std::size_t methods = ranking.methods.size();
   const double slot = (kPanelWidth - 2 * kMargin) / static_cast<double>(methods);
   const auto inputs = static_cast<double>(ranking.summary.inputs);
@@ -99,7 +99,7 @@ void drawBars(Drawing& drawing, const CriterionRanking& ranking, double left, do
       if (count == 0) continue;
       const double height = kBarHeight * static_cast<double>(count) / inputs;
       bottom -= height;
-      const char* const color = colorOf(place, methods);
+      const char* const color = colorOf(place, places);
       drawing.rectangle(
           x, bottom, 0.76 * slot, height, color,
           ranking.methods[j].method + ", place " + std::to_string(place + 1) + ": " + std::to_string(count));
@@ -186,7 +186,8 @@ std::string rankingsSvg(const Rankings& rankings) {
   Drawing drawing;
   const double width = kPanelsPerRow * kPanelWidth + 2 * kMargin;
   drawing.text(kMargin, 26, "Rankings: " + rankings.experiment.name, 18, "start");
-  drawLegend(drawing, std::max<std::size_t>(rankings.experiment.methods.size(), 1), 48);
+  const std::size_t places = rankings.experiment.methods.size();
+  drawLegend(drawing, places, 48);
   double top = kMargin + kLegendHeight;
   for (const RankingTable& table : rankings.tables) {
     drawing.text(kMargin, top + 22, captionOf(table), 14, "start");
@@ -195,7 +196,7 @@ std::string rankingsSvg(const Rankings& rankings) {
       const double left = kMargin + kPanelWidth * static_cast<double>(i % kPanelsPerRow);
       const double panelTop = top + kPanelHeight * static_cast<double>(i / kPanelsPerRow);
       drawing.text(left + 0.5 * kPanelWidth, panelTop + 12, table.criteria[i].criterion, 13);
-      drawBars(drawing, table.criteria[i], left, panelTop + 22);
+      drawBars(drawing, table.criteria[i], places, left, panelTop + 22);
       drawCriticalDifference(drawing, table.criteria[i], left, panelTop + 22 + kBarHeight + 50);
     }
     const std::size_t rows = (table.criteria.size() + kPanelsPerRow - 1) / kPanelsPerRow;
