@@ -342,6 +342,49 @@ TEST(ReadMesh, FaultsOfTheFileAreNamedWithTheirPlace) {
   EXPECT_THAT(read(hugeStl, ".stl").error, HasSubstr("declares 4294967295 triangles, file ends after record 12"));
 }
 
+// Whatever becomes of a file's bytes, it is a mesh that keeps what is promised, or an InputError.
+TEST(ReadMesh, ChangedBytesAreReadOrRefused) {
+  const std::vector<std::array<std::string, 2>> files = {
+      {cubeOff(), ".off"},         {cubeObj(true), ".obj"},
+      {cubePly("ascii"), ".ply"},  {cubeStlText(), ".stl"},
+      {cubeStlBytes(), ".stl"},    {cubePly("binary_little_endian"), ".ply"},
+      {cubeStlBytes("x"), ".stl"}, {cubePly("binary_big_endian"), ".ply"}};
+  int accepted = 0;
+  for (std::uint64_t i = 0; i < 8000; ++i) {
+    auto [bytes, format] = files[i % files.size()];
+    const auto random = [&](std::uint64_t k) { return randomBits(i, RandomStream::test, k); };
+    for (std::uint64_t change = 0; change <= random(0) % 3; ++change) {
+      const std::size_t at = random(3 * change + 1) % bytes.size();
+      switch (random(3 * change + 2) % 4) {
+        case 0:
+          bytes[at] = static_cast<char>(random(3 * change + 3));
+          break;
+        case 1:
+          bytes.erase(at, 1 + random(3 * change + 3) % 9);
+          break;
+        case 2:
+          bytes.insert(at, bytes.substr(random(3 * change + 3) % bytes.size(), 12));
+          break;
+        default:
+          bytes.resize(at + 1);
+      }
+    }
+    const Outcome outcome = read(bytes, format);
+    if (!outcome.error.empty()) continue;
+    ++accepted;
+    const TriangleMesh& mesh = outcome.result.mesh;
+    for (const auto& triangle : mesh.triangles) {
+      for (const Index v : triangle) {
+        ASSERT_LT(static_cast<std::size_t>(v), mesh.vertices.size());
+        ASSERT_TRUE(mesh.vertices[static_cast<std::size_t>(v)].allFinite());
+      }
+    }
+    ASSERT_GT(std::abs(enclosedVolume(mesh)), 0);
+  }
+  EXPECT_GT(accepted, 100);
+  EXPECT_LT(accepted, 7000);
+}
+
 TEST(ReadMesh, FarFromTheOriginNoBitIsLost) {
   const Vec3 far(1e6 + 0.1, -3e5, 0.3);
   const Outcome outcome = read(off(cubeCorners(far, 0.7), kCubeFaces), ".off");
