@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 
+#include "facet_frame.hpp"
 #include "projection.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/parallel.hpp"
@@ -51,6 +52,7 @@ struct CapChunk {
   std::vector<Vec3> points;
   std::vector<std::uint32_t> counts;
   std::vector<Triangle> triangles;  // the chunk's own points numbered −1, −2, …
+  std::vector<Index> apexes;        // of each loop: its number in points, or kNone
   std::vector<Caps::Collapsed> collapsed;
   std::vector<Caps::Patch> patches;
   ClipSummary summary;
@@ -94,19 +96,7 @@ class CellCapper {
     return frame;
   }
 
-  // How far a ray from p in direction d stays within the convex cell.
-  double reachInCell(const Vec3& p, const Vec3& d) const {
-    const Vec3& own = diagram_.sites[static_cast<std::size_t>(site_)];
-    double reach = std::numeric_limits<double>::infinity();
-    for (const Index facet : diagram_.facetsOf(site_)) {
-      const auto& [a, b] = diagram_.facetSites[static_cast<std::size_t>(facet)];
-      const Vec3& other = diagram_.sites[static_cast<std::size_t>(a == site_ ? b : a)];
-      const Vec3 across = other - own;
-      const double approach = across.dot(d);
-      if (approach > 0) reach = std::min(reach, std::max(0.0, across.dot(0.5 * (own + other) - p) / approach));
-    }
-    return reach;
-  }
+  double reachInCell(const Vec3& p, const Vec3& d) const { return voronoi::reachInCell(diagram_, site_, p, d); }
 
   static Cap fan(std::span<const Index> loop, const Vec3& apex) {
     Cap cap;
@@ -283,6 +273,7 @@ class CellCapper {
   void emit(const Cap& cap) {
     if (cap.collapsedPolygon != kNone) chunk_.collapsed.push_back({cap.collapsedPolygon, site_});
     if (cap.patch) chunk_.patches.push_back(*cap.patch);
+    chunk_.apexes.push_back(cap.apex ? static_cast<Index>(chunk_.points.size()) : kNone);
     if (cap.apex) chunk_.points.push_back(*cap.apex);
     const Index apex = -static_cast<Index>(chunk_.points.size());
     for (Triangle triangle : cap.triangles) {
@@ -330,6 +321,7 @@ Caps buildCaps(const Diagram& diagram, ClippedDiagram& clipped, const implicit::
       }
       caps.triangles.push_back(triangle);
     }
+    for (const Index apex : chunk.apexes) caps.apexes.push_back(apex == kNone ? kNone : base + apex);
     caps.points.insert(caps.points.end(), chunk.points.begin(), chunk.points.end());
     caps.collapsed.insert(caps.collapsed.end(), chunk.collapsed.begin(), chunk.collapsed.end());
     caps.patches.insert(caps.patches.end(), chunk.patches.begin(), chunk.patches.end());

@@ -12,6 +12,7 @@ namespace voroform::voronoi {
 // Caps of all loops. A triangle's points are numbered like the clipped diagram's; the caps' own points follow them.
 struct Caps {
   std::vector<Vec3> points;
+  std::vector<Index> apexes;                    // of each loop: the point about which its cap is a fan, or kNone
   std::vector<std::uint32_t> triangleOffsets;   // rows: loops → triangles
   std::vector<std::array<Index, 3>> triangles;  // counter-clockwise seen from outside the solid
 

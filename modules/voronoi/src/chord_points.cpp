@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "facet_clipping.hpp"
+#include "facet_frame.hpp"
 #include "projection.hpp"
 #include "voroform/core/parallel.hpp"
 
@@ -21,69 +22,12 @@ constexpr double kReach = 2;
 // Points keep this share of the way to the facet's border clear, so that they stay inside the facet.
 constexpr double kBorderShare = 1e-3;
 
-// A facet's plane as a 2D frame; the loop of its diagram vertices is counter-clockwise in it.
-struct PlaneFrame {
-  Vec3 origin;
-  Vec3 u;
-  Vec3 v;
-  Eigen::Vector2d operator()(const Vec3& p) const { return {u.dot(p - origin), v.dot(p - origin)}; }
-};
-
-double cross2(const Eigen::Vector2d& a, const Eigen::Vector2d& b) { return a.x() * b.y() - a.y() * b.x(); }
-
-// How far a ray from p in direction d stays within the convex facet.
-double reachInFacet(const std::vector<Eigen::Vector2d>& facet, const Eigen::Vector2d& p, const Eigen::Vector2d& d) {
-  double reach = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < facet.size(); ++k) {
-    const Eigen::Vector2d& a = facet[k];
-    const Eigen::Vector2d edge = facet[(k + 1) % facet.size()] - a;
-    const double approach = cross2(d, edge);  // > 0 where the ray nears this edge's line from its left
-    if (approach > 0) reach = std::min(reach, std::max(0.0, cross2(edge, p - a) / approach));
-  }
-  return reach;
-}
-
-bool properlyCross(const Eigen::Vector2d& a, const Eigen::Vector2d& b, const Eigen::Vector2d& c,
-                   const Eigen::Vector2d& d) {
-  const double abc = cross2(b - a, c - a);
-  const double abd = cross2(b - a, d - a);
-  const double cda = cross2(d - c, a - c);
-  const double cdb = cross2(d - c, b - c);
-  return (abc > 0) != (abd > 0) && (cda > 0) != (cdb > 0);
-}
-
-// Whether two edges of the polygons, given as one list of closed rings, cross; edges that share an end do not.
-bool simple(const std::vector<std::vector<Eigen::Vector2d>>& rings) {
-  struct Segment {
-    const Eigen::Vector2d* a;
-    const Eigen::Vector2d* b;
-  };
-  std::vector<Segment> segments;
-  for (const auto& ring : rings) {
-    for (std::size_t k = 0; k < ring.size(); ++k) segments.push_back({&ring[k], &ring[(k + 1) % ring.size()]});
-  }
-  for (std::size_t i = 0; i < segments.size(); ++i) {
-    for (std::size_t j = i + 1; j < segments.size(); ++j) {
-      const Segment& s = segments[i];
-      const Segment& t = segments[j];
-      if (s.a == t.b || s.b == t.a) continue;
-      if (properlyCross(*s.a, *s.b, *t.a, *t.b)) return false;
-    }
-  }
-  return true;
-}
-
 // The chords of one facet and the points found for them.
 class FacetChords {
  public:
   FacetChords(const Diagram& diagram, const ClippedDiagram& clipped, Index facet)
       : diagram_(diagram), clipped_(clipped) {
-    const auto& [a, b] = diagram.facetSites[static_cast<std::size_t>(facet)];
-    const Vec3 normal =
-        (diagram.sites[static_cast<std::size_t>(b)] - diagram.sites[static_cast<std::size_t>(a)]).normalized();
-    frame_.u = normal.unitOrthogonal();
-    frame_.v = normal.cross(frame_.u);
-    frame_.origin = clipped.position(diagram, diagram.facet(facet).front());
+    frame_ = facetFrame(diagram, facet);
     for (const Index v : diagram.facet(facet))
       corners_.push_back(frame_(diagram.vertices[static_cast<std::size_t>(v)]));
   }
@@ -116,7 +60,7 @@ class FacetChords {
  private:
   const Diagram& diagram_;
   const ClippedDiagram& clipped_;
-  PlaneFrame frame_;
+  FacetFrame frame_;
   std::vector<Eigen::Vector2d> corners_;
 };
 
@@ -200,7 +144,7 @@ void bendFacet(const Diagram& diagram, const ClippedDiagram& clipped, const Face
           }
         });
   }
-  if (points == 0 || simple(rings)) return;
+  if (points == 0 || simpleAndApart(rings)) return;
   for (std::size_t c = range.chordBegin; c < range.chordEnd; ++c) found[c].reset();
   counts.failed += points;
 }

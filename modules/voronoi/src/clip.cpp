@@ -13,6 +13,7 @@ ClippedDiagram clip(const Diagram& diagram, const implicit::ImplicitFunction& f,
     clipped.points = std::move(roots.positions);
     clipped.rootCount = static_cast<Index>(clipped.points.size());
     clipped.rootSites = std::move(roots.sites);
+    clipped.rootEnds = std::move(roots.ends);
     clipped.summary.roots = clipped.rootCount;
     clipped.summary.doubleRootEdges = roots.doubleRootEdges;
     clipped.summary.oracleShare = roots.oracleShare;

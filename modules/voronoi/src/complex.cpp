@@ -2,6 +2,7 @@
 #include <map>
 
 #include "caps.hpp"
+#include "fit.hpp"
 #include "voroform/core/parallel.hpp"
 #include "voroform/voronoi/clip.hpp"
 
@@ -70,11 +71,38 @@ void addPlanarBoundary(mesh::PolyhedralComplex& complex, std::span<const Index> 
   }
 }
 
+std::vector<mesh::FaceTag> capTags(const Diagram& diagram, const ClippedDiagram& clipped, const Caps& caps,
+                                   const implicit::ImplicitFunction& f, const RunContext& context) {
+  const std::size_t own = diagram.vertices.size() + clipped.points.size();
+  std::vector<mesh::FaceTag> tags(caps.triangles.size());
+  parallelFor(context, tags.size(), 1024, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t t = begin; t < end; ++t) {
+      Vec3 centroid = Vec3::Zero();
+      for (const Index point : caps.triangles[t]) {
+        const auto p = static_cast<std::size_t>(point);
+        centroid += (p < own ? clipped.position(diagram, point) : caps.points[p - own]) / 3;
+      }
+      tags[t] = f.onEnvelope(centroid) ? mesh::FaceTag::envelope : mesh::FaceTag::surface;
+    }
+  });
+  return tags;
+}
+
 }  // namespace
 
 mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clipped, const implicit::ImplicitFunction& f,
                                   const Frame& frame, const ClipOptions& options, const RunContext& context) {
-  const Caps caps = buildCaps(diagram, clipped, f, options, context);
+  Caps caps = buildCaps(diagram, clipped, f, options, context);
+  std::vector<mesh::FaceTag> tags = capTags(diagram, clipped, caps, f, context);
+  if (options.fit) {
+    fitCaps(diagram, clipped, caps, tags, f, options, context);
+    if (options.cap == CapKind::cvt1) {
+      // The hulls over the moved roots.
+      clipped.summary.fallbackCaps = clipped.summary.crossingCells = 0;
+      caps = buildCaps(diagram, clipped, f, options, context);
+      tags = capTags(diagram, clipped, caps, f, context);
+    }
+  }
   const std::size_t pointCount = diagram.vertices.size() + clipped.points.size() + caps.points.size();
   const auto position = [&](std::size_t point) -> const Vec3& {
     const std::size_t own = diagram.vertices.size() + clipped.points.size();
@@ -153,14 +181,6 @@ mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clippe
                       cellOf[static_cast<std::size_t>(patch->site)]);
   }
 
-  std::vector<mesh::FaceTag> tags(caps.triangles.size());
-  parallelFor(context, tags.size(), 1024, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t t = begin; t < end; ++t) {
-      Vec3 centroid = Vec3::Zero();
-      for (const Index point : caps.triangles[t]) centroid += position(static_cast<std::size_t>(point)) / 3;
-      tags[t] = f.onEnvelope(centroid) ? mesh::FaceTag::envelope : mesh::FaceTag::surface;
-    }
-  });
   for (Index l = 0; l < clipped.loopCount(); ++l) {
     const Index cell = cellOf[static_cast<std::size_t>(clipped.loopSites[static_cast<std::size_t>(l)])];
     for (std::size_t t = caps.triangleOffsets[static_cast<std::size_t>(l)];

@@ -246,6 +246,7 @@ struct RootChunk {
   std::vector<std::uint32_t> counts;
   std::vector<Vec3> positions;
   std::vector<std::array<Index, 3>> sites;
+  std::vector<std::array<Index, 2>> ends;
   std::int64_t evaluations = 0;
 };
 
@@ -277,6 +278,7 @@ RootChunk chunkRoots(std::span<const Edge> edges, const Diagram& diagram, const 
     for (const double t : roots) {
       chunk.positions.push_back(diagram.vertices[v] + t * (diagram.vertices[w] - diagram.vertices[v]));
       chunk.sites.push_back(sites);
+      chunk.ends.push_back({static_cast<Index>(v), static_cast<Index>(w)});
     }
   }
   return chunk;
@@ -326,6 +328,7 @@ EdgeRoots findEdgeRoots(const Diagram& diagram, const implicit::ImplicitFunction
     }
     result.positions.insert(result.positions.end(), chunk.positions.begin(), chunk.positions.end());
     result.sites.insert(result.sites.end(), chunk.sites.begin(), chunk.sites.end());
+    result.ends.insert(result.ends.end(), chunk.ends.begin(), chunk.ends.end());
   }
   exclusiveScan(result.rootOffsets);
   result.inside = std::move(signs.inside);

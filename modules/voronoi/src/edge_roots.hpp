@@ -20,6 +20,7 @@ struct EdgeRoots {
   std::vector<std::uint32_t> rootOffsets;  // of each crossed edge, in the order from its lower to its higher vertex
   std::vector<Vec3> positions;
   std::vector<std::array<Index, 3>> sites;  // of each root's edge, ascending
+  std::vector<std::array<Index, 2>> ends;   // of each root's edge: its diagram vertices, in the order of its roots
 
   std::int64_t evaluations = 0;
   Index doubleRootEdges = 0;

@@ -9,6 +9,7 @@
 #include "voroform/core/run_context.hpp"
 #include "voroform/implicit/implicit_function.hpp"
 #include "voroform/implicit/roots.hpp"
+#include "voroform/implicit/surface_fit.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
 #include "voroform/voronoi/diagram.hpp"
 
@@ -27,6 +28,10 @@ struct ClipOptions {
   implicit::RootFinder rootFinder = implicit::RootFinder::itp;
   // Relative to the diagram edge: width of the bracket at which root finding stops.
   double rootTolerance = 1e-12;
+  // Move the boundary's vertices off S to where its triangles follow S best in the mean square, each along the one
+  // direction that keeps the complex conforming: cvt4 is cvt3 fitted. Not for CapKind::flat.
+  bool fit = false;
+  implicit::FitOptions fitOptions = {};
 };
 
 // What was done, and every fallback that was taken.
@@ -41,6 +46,9 @@ struct ClipSummary {
   Index unprojectedPoints = 0;   // of both, those left where they were
   Index fallbackCaps = 0;        // caps made in another way than asked for
   Index crossingCells = 0;       // cells whose caps cross in spite of every fallback: the certificate will say so
+  Index fittedPoints = 0;        // boundary vertices that the fit moved
+  Index unfittedPoints = 0;      // of those it could move, left where they were to keep an embedding rule
+  implicit::FitSummary fit;      // of the least-squares fit
   std::int64_t evaluations = 0;  // of f at single points, root finding and probes included
   double oracleShare = 0;        // share of the diagram's vertices whose sign the oracle decided
 };
@@ -61,7 +69,9 @@ struct ClippedDiagram {
   std::vector<Vec3> points;
   Index rootCount = 0;
   std::vector<std::array<Index, 3>> rootSites;  // the three sites of each root's edge, ascending
-  std::vector<Index> chordPointFacets;          // the facet of each chord point
+  // The two diagram vertices of each root's edge; roots of one edge stand in a row, in their order from the first.
+  std::vector<std::array<Index, 2>> rootEnds;
+  std::vector<Index> chordPointFacets;  // the facet of each chord point
 
   // What the solid keeps of each facet.
   enum class FacetState : std::uint8_t { outside, whole, cut };
