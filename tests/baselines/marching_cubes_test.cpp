@@ -80,7 +80,7 @@ TEST(MarchingCubes, VolumeConvergesWithOrderTwo) {
   }
 }
 
-// A plane through a grid, closed by a layer of its own far away.
+// The faces of a rotated box, away from its edges.
 TEST(MarchingCubes, IsExactOnPlanes) {
   const Mat3 rotation = randomRotation(9);
   const auto f = implicit::transformed(implicit::box(Vec3(2, 2, 2)), rotation, Vec3::Zero());

@@ -440,6 +440,41 @@ TEST(CubeTopology, KeepsItsCaseUnderTheSymmetriesOfTheCube) {
   }
 }
 
+// Six decisions that no trilinear function takes, but that rounding may: corners 0 and 3 joined on z = 0, 5 and 6 on
+// z = 1, and nothing else.
+TEST(CubePatch, KeepsTwoHexagonsApartWhereverTheirVerticesLie) {
+  CubeTopology cube;
+  cube.insideCorners = 1U << 0 | 1U << 3 | 1U << 5 | 1U << 6;
+  cube.ambiguousFaces = 0x3F;
+  cube.joinedFaces = 0x30;
+  constexpr std::array<std::array<int, 2>, 12> kLoops = {
+      {{0, 4}, {0, 2}, {3, 2}, {3, 7}, {3, 1}, {0, 1}, {5, 1}, {5, 4}, {6, 4}, {6, 2}, {6, 7}, {5, 7}}};
+  for (std::size_t n = 0; n < 12; ++n) {
+    cube.loopEdges[n] = static_cast<std::uint8_t>(edgeBetween(kLoops[n][0], kLoops[n][1]));
+  }
+  cube.loopCount = 2;
+  cube.loopOffsets = {0, 6, 12};
+  CubePatch patch;
+  for (std::uint64_t sample = 0; sample < 300; ++sample) {
+    std::array<double, 12> parameters{};
+    for (std::size_t edge = 0; edge < 12; ++edge) {
+      const double u = randomUnit(3, RandomStream::test, 12 * sample + edge);
+      parameters[edge] = u < 0.2 ? 1e-6 : (u > 0.8 ? 1 - 1e-6 : u);
+    }
+    triangulateCut(cube, parameters, patch);
+    mesh::PolyhedralComplex surface;
+    for (int edge = 0; edge < 12; ++edge) {
+      surface.vertices.push_back(pointOnEdge(edge, parameters[static_cast<std::size_t>(edge)]));
+    }
+    surface.vertices.insert(surface.vertices.end(), patch.interior.begin(), patch.interior.end());
+    surface.cellCount = 1;
+    for (const auto& t : patch.triangles) surface.addFace(std::array<Index, 3>{t[0], t[1], t[2]}, 0, kNone);
+    mesh::ValidateOptions options;
+    options.pointSamples = 0;
+    ASSERT_EQ(mesh::validate(surface, options, {}).selfIntersections, 0) << "sample " << sample;
+  }
+}
+
 // Random integers at the corners of 8³ cubes with a layer of outside corners around them. Between corners the function
 // is linear along the grid's edges, or its root is at a random place of the edge: topology comes from the corners only.
 class RandomGrid final : public implicit::ImplicitFunction {

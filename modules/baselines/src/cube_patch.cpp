@@ -44,7 +44,8 @@ void fanAboutPoint(std::span<const std::uint8_t> loop, const Vec3& center, CubeP
 
 // Two hexagons in one cube each join a diagonal of one of two opposite faces. This point keeps a fan on its side of
 // the cone from the cube's center over the skew quadrilateral of the four other faces' diagonals between the two,
-// wherever on their edges the vertices lie.
+// wherever on their edges the vertices lie. (The products compared on the six faces exclude this case but for
+// rounding: only values within a few units in the last place of ties get here.)
 Vec3 centerNearJoinedFace(std::span<const std::uint8_t> loop) {
   std::array<int, 6> visits{};
   for (const std::uint8_t edge : loop) {
