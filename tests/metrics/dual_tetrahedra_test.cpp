@@ -9,6 +9,7 @@
 #include <limits>
 #include <numbers>
 
+#include "dual_sites.hpp"
 #include "support/complexes.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/random.hpp"
@@ -86,6 +87,34 @@ TEST(DualTetrahedra, Sphere) {
   expectBoundaryOnSurface(dual, 1000, sphereDistance);
   EXPECT_EQ(dual.complex.frame.origin, Vec3(1, 2, 3));
   EXPECT_TRUE(dual.complex.cellSites.empty());
+  // The sites of the CVT's boundary cells, and hardly any that come later.
+  EXPECT_LE(dual.summary.addedSurfaceSites, dual.summary.surfaceSites / 50);
+}
+
+TEST(DualTetrahedra, SitesWhoseCellsReachTheSurfaceAreProjected) {
+  const auto sphere = implicit::sphere(1);
+  const RunContext context;
+  DualSites sites(cvtOf(*sphere, 1000).cellSites, *sphere, 1, context);
+  EXPECT_EQ(sites.surfaceCount(), 0);
+  // Nothing is on S yet, so that every piece of S is large enough.
+  sites.step();
+  EXPECT_GT(sites.surfaceCount(), 300);
+  for (std::size_t i = 0; i < sites.positions().size(); ++i) {
+    const double d = sphereDistance(sites.positions()[i]);
+    EXPECT_TRUE(sites.onSurface()[i] != 0 ? std::abs(d) < 1e-9 : d < -0.05) << d;
+  }
+}
+
+TEST(DualTetrahedra, SitesOfOneProjectionStayApart) {
+  // Two sites on one radius: the second one stays where it is.
+  const auto sphere = implicit::sphere(1);
+  const RunContext context;
+  DualSites sites({Vec3(0.5, 0, 0), Vec3(0.75, 0, 0), Vec3(0, 0.5, 0)}, *sphere, 1, context);
+  EXPECT_EQ(sites.project({1, 1, 1}), 2);
+  EXPECT_NE(sites.positions()[0], sites.positions()[1]);
+  EXPECT_NEAR(sites.positions()[0].norm(), 1, 1e-9);
+  EXPECT_EQ(sites.positions()[1], Vec3(0.75, 0, 0));
+  EXPECT_NEAR(sites.positions()[2].norm(), 1, 1e-9);
 }
 
 TEST(DualTetrahedra, Torus) {

@@ -13,7 +13,7 @@ namespace voroform::metrics {
 // its cell's piece of S, and back to S; one inside towards the centroid of its clipped cell.
 class DualSites {
  public:
-  // No site is on S at first. `reach`: how far one is projected at most.
+  // No site is on S at first. `reach`: how far one is projected at most. The form and the context must outlive this.
   DualSites(std::vector<Vec3> sites, const implicit::ImplicitFunction& f, double reach, const RunContext& context);
 
   const std::vector<Vec3>& positions() const { return positions_; }
