@@ -163,9 +163,10 @@ void addTessellationOptions(CLI::App& command, Settings& settings) {
   command
       .add_option("--method", settings.method,
                   "Caps of the boundary cells: cvt1 convex hulls, cvt2 a point on the surface for each cap, cvt3 also "
-                  "one for each chord")
-      ->check(oneOf({"cvt1", "cvt2", "cvt3"}))
+                  "one for each chord, cvt4 those of cvt3 fitted to the surface in the mean square")
+      ->check(oneOf({"cvt1", "cvt2", "cvt3", "cvt4"}))
       ->capture_default_str();
+  command.add_flag("--fit", settings.fit, "Fit the caps of cvt1 or cvt2, too (cvt3 fitted is cvt4)");
   command.add_option("--sites", settings.sites, "Number of sites, and so of cells")
       ->check(inRange(Index{1}, std::numeric_limits<Index>::max()))
       ->capture_default_str();
@@ -187,7 +188,8 @@ void addTessellationOptions(CLI::App& command, Settings& settings) {
       ->type_name("LIST")
       ->check(someOf("format", formatNames()))
       ->capture_default_str();
-  command.add_flag("--no-accuracy", settings.noAccuracy, "Do not measure the accuracy, which takes its time");
+  command.add_flag("--no-accuracy", settings.noAccuracy,
+                   "Do not measure the accuracy, which takes about half of the run");
   command.add_option("--memory-limit", settings.memoryLimit,
                      "Most memory to take, e.g. 4GB; 0: what the machine has")
       ->type_name("SIZE")
@@ -204,7 +206,9 @@ void addCompareOptions(CLI::App& command, Settings& settings) {
           "tetrahedra follow from it")
       ->check(inRange(Index{4}, Index{1000}))
       ->capture_default_str();
-  command.add_option("--methods", settings.methods, "The methods to run, separated by commas; all if not given")
+  command
+      .add_option("--methods", settings.methods,
+                  "The methods to run, separated by commas; all but cvt1+fit and cvt2+fit if not given")
       ->type_name("LIST")
       ->check(someOf("method", pipeline::methodNames()));
   command.add_option("--iterations", settings.iterations, "Iterations of the CVTs' optimizer")
@@ -225,6 +229,8 @@ void addCompareOptions(CLI::App& command, Settings& settings) {
       ->capture_default_str();
   command.add_flag("--no-equal-triangles", settings.noEqualTriangles,
                    "Leave out the comparison at equal numbers of boundary triangles");
+  command.add_flag("--fit-baselines", settings.fitBaselines,
+                   "Also fit the boundaries of Marching Cubes and Delaunay refinement to the surface, as cvt4's is");
   command.add_flag("--no-dual", settings.noDual, "Leave out the dual tetrahedra of cvt1");
   command.add_flag(
       "--no-rotation", settings.noRotation,
@@ -336,9 +342,9 @@ pipeline::WriteOptions writeOptions(const Settings& settings) {
   cvt.sites = settings.sites;
   cvt.iterations = settings.iterations;
   cvt.optimizer = settings.optimizer == "lloyd" ? cvt::Optimizer::lloyd : cvt::Optimizer::lbfgs;
-  cvt.cap = settings.method == "cvt1"   ? voronoi::CapKind::cvt1
-            : settings.method == "cvt2" ? voronoi::CapKind::cvt2
-                                        : voronoi::CapKind::cvt3;
+  const pipeline::CvtMethod method = pipeline::cvtMethod(settings.method);
+  cvt.cap = method.cap;
+  cvt.fit = method.fit || settings.fit;
   cvt.rootFinder = settings.rootFinder == "bisection" ? implicit::RootFinder::bisection : implicit::RootFinder::itp;
   cvt.relativeError = settings.relativeError;
   cvt.memoryLimit = settings.memoryLimit;
@@ -357,6 +363,7 @@ pipeline::CompareOptions compareOptions(const Settings& settings) {
   options.delaunay.exude = settings.exude;
   options.delaunayTimeLimit = settings.delaunayTimeLimit;
   options.equalTriangles = !settings.noEqualTriangles;
+  options.fitBaselines = settings.fitBaselines;
   options.dualTetrahedra = !settings.noDual;
   options.seed = settings.seed;
   options.threads = effectiveThreads(settings);
