@@ -81,6 +81,11 @@ int runRank(const Settings& settings, const CLI::App& command, const RunContext&
                       " runs failed and are left out of the rankings, which say why; another call of rank tries them "
                       "again");
   }
+  if (const std::size_t invalid = rankings.invalidTessellations(); invalid > 0) {
+    throw MethodError(settings.output + ": " + std::to_string(invalid) +
+                      " tessellations fail their certificate of validity; rankings.md lists them; another --resolution "
+                      "or --seed may help");
+  }
   return kExitDone;
 }
 

@@ -172,6 +172,7 @@ Json runKeyJson(const RankOptions& options, const RankedRun& run) {
           {"rotate", experiment.rotate},
           {"envelope", toString(options.form.envelope)},
           {"margin", options.form.margin},
+          {"samples", options.form.samples},
           {"as", options.form.inputKind == InputKind::points ? "points"
                  : options.form.inputKind == InputKind::mesh ? "mesh"
                                                              : "auto"},

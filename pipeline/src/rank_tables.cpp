@@ -129,6 +129,16 @@ std::size_t Rankings::failedRuns() const {
       std::count_if(runs.begin(), runs.end(), [](const RankedRun& run) { return !run.failure.empty(); }));
 }
 
+std::size_t Rankings::invalidTessellations() const {
+  std::size_t count = 0;
+  for (const RankedRun& run : runs) {
+    count += static_cast<std::size_t>(std::count_if(run.outcomes.begin(), run.outcomes.end(), [](const auto& outcome) {
+      return outcome.method.starts_with("cvt") && outcome.failure.empty() && !outcome.valid;
+    }));
+  }
+  return count;
+}
+
 const std::vector<std::string>& rankedCriteria() {
   static const std::vector<std::string> criteria = {"dmean", "drmse", "nmean", "nrmse", "gmean", "gmax", "seconds"};
   return criteria;

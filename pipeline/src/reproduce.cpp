@@ -152,6 +152,10 @@ void reproduceDataSet(const std::string& dataSet, const std::vector<PublishedFig
   context.info(dataSet + ": " + standIn.input + " stands in, at resolution " + std::to_string(standIn.resolution));
   const Comparison comparison = compare(form, compareWith, context);
   standIn.sites = comparison.sites;
+  for (const MethodOutcome& outcome : comparison.methods) {
+    if (!outcome.failure.empty() || outcome.measurement.certificate.valid) continue;
+    result.remarks.push_back(dataSet + ", " + outcome.method + ": the tessellation fails its certificate of validity.");
+  }
   for (const PublishedFigure& figure : published) {
     ReproducedFigure reproduced;
     reproduced.published = figure;

@@ -80,6 +80,8 @@ struct Rankings {
   std::vector<RankedRun> runs;
   std::vector<RankingTable> tables;
   std::size_t failedRuns() const;
+  // Tessellations by a CVT that fail their certificate: a fault of ours, where a baseline's is a finding.
+  std::size_t invalidTessellations() const;
 };
 
 // dmean, drmse, nmean, nrmse, gmean, gmax, seconds.
