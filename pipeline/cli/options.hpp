@@ -34,7 +34,9 @@ struct Settings {
   Index samples = 100000;
   std::optional<std::uint64_t> rotationSeed;
 
-  std::string method = "cvt3";
+  std::string method = "cvt4";
+  bool fit = false;
+  bool fitBaselines = false;
   Index sites = 15000;
   int iterations = 10;
   std::string optimizer = "lbfgs";

@@ -20,17 +20,13 @@ bool contains(const std::vector<std::string>& list, std::string_view name) {
   return std::find(list.begin(), list.end(), name) != list.end();
 }
 
-voronoi::CapKind capOf(const std::string& method) {
-  if (method == "cvt2") return voronoi::CapKind::cvt2;
-  if (method == "cvt3") return voronoi::CapKind::cvt3;
-  return voronoi::CapKind::cvt1;
-}
-
 cvt::TessellateOptions cvtOptions(const CompareOptions& options, Index sites, const std::string& method) {
   cvt::TessellateOptions result;
   result.sites = sites;
   result.iterations = method == kNotOptimized ? 0 : options.iterations;
-  result.cap = capOf(method);
+  const CvtMethod kind = cvtMethod(method == kNotOptimized ? "cvt1" : method);
+  result.cap = kind.cap;
+  result.fit = kind.fit;
   result.seed = options.seed;
   return result;
 }
@@ -205,6 +201,26 @@ void makeDelaunay(Comparing& comparing, const baselines::DelaunayOptions& option
   context.report("refinement", 1);
 }
 
+MethodOutcome fittedBaseline(Comparing& comparing, const baselines::CubeGrid& grid, const MethodOutcome& baseline,
+                             const RunContext& context) {
+  MethodOutcome outcome;
+  outcome.method = baseline.method + "+fit";
+  outcome.failure = baseline.failure;
+  outcome.matched = baseline.matched;
+  outcome.cubeEdge = baseline.cubeEdge;
+  outcome.complex = baseline.complex;
+  outcome.marchingCubes = baseline.marchingCubes;
+  outcome.delaunay = baseline.delaunay;
+  outcome.peakMemoryBytes = baseline.peakMemoryBytes;
+  if (!outcome.failure.empty()) return outcome;
+  const Stopwatch watch;
+  const implicit::ImplicitFunction& f = *comparing.form.function;
+  outcome.fit = baseline.marchingCubes ? baselines::fitMarchingCubes(outcome.complex, grid, f, {}, context)
+                                       : baselines::fitTetrahedra(outcome.complex, f, {}, context);
+  outcome.seconds = baseline.seconds + watch.seconds();
+  return outcome;
+}
+
 void evaluateOutcome(Comparing& comparing, MethodOutcome& outcome, const RunContext& context) {
   if (!outcome.failure.empty()) return;
   const Stopwatch watch;
@@ -215,7 +231,7 @@ void evaluateOutcome(Comparing& comparing, MethodOutcome& outcome, const RunCont
   outcome.boundaryTriangles = boundaryTriangles(complex);
   outcome.measurement = measure(complex, comparing.form, comparing.inside, comparing.options.seed, context);
   outcome.triangles = metrics::boundaryTriangleQuality(complex);
-  if (outcome.method == "delaunay") outcome.tetrahedra = metrics::tetrahedraQuality(complex, context);
+  if (outcome.delaunay) outcome.tetrahedra = metrics::tetrahedraQuality(complex, context);
   context.report("accuracy", 0);
   metrics::AccuracyOptions accuracy;
   accuracy.cellSize = comparing.cellSize;
@@ -259,6 +275,13 @@ Comparison compare(const Form& form, const CompareOptions& options, const RunCon
     comparing.secondsEvaluation += outcome.secondsEvaluation;
     result.methods.push_back(std::move(outcome));
     context.throwIfCancelled();
+    if (options.fitBaselines && !isCvt(method)) {
+      const RunContext ofFit = named(recording, method + "+fit");
+      MethodOutcome fitted = fittedBaseline(comparing, result.grid, result.methods.back(), ofFit);
+      evaluateOutcome(comparing, fitted, ofFit);
+      comparing.secondsEvaluation += fitted.secondsEvaluation;
+      result.methods.push_back(std::move(fitted));
+    }
   }
   if (options.equalTriangles) result.equalTriangles = equalTriangles(comparing, result.grid, result.methods, recording);
   result.secondsEvaluation = comparing.secondsEvaluation;

@@ -32,6 +32,7 @@ Json optionsJson(const Form& form, const CompareOptions& options) {
           {"facet_distance", options.delaunay.facetDistance},
           {"delaunay_time_limit", options.delaunayTimeLimit},
           {"equal_triangles", options.equalTriangles},
+          {"fit_baselines", options.fitBaselines},
           {"dual_tetrahedra", options.dualTetrahedra},
           {"envelope", toString(form.record.envelope)},
           {"margin", form.record.margin}};
@@ -126,6 +127,12 @@ Json methodJson(const Form& form, const MethodOutcome& outcome) {
   if (outcome.cvt) {
     json["energy"] = energyJson(*outcome.cvt);
     json["clipping"] = clippingJson(*outcome.cvt);
+  }
+  if (outcome.fit) {
+    json["fit"] = {{"moved_vertices", outcome.fit->moved},
+                   {"taken_back", outcome.fit->takenBack},
+                   {"samples", outcome.fit->summary.samples},
+                   {"unfound", outcome.fit->summary.unfound}};
   }
   json["seconds"] = secondsJson(outcome);
   json["peak_memory_bytes"] = orNull(outcome.peakMemoryBytes);

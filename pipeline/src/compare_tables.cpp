@@ -144,7 +144,8 @@ std::string tetrahedraTable(const std::vector<MethodOutcome>& methods) {
   MarkdownTable table({"method", "tetrahedra", "VQ1", "VQ2", "VQ3", "VQ4", "worst VQ1", "worst VQ2", "worst VQ3",
                        "worst VQ4", "slivers"});
   for (const MethodOutcome& outcome : methods) {
-    if (outcome.method == "delaunay" && !outcome.failure.empty()) table.row({outcome.method, outcome.failure});
+    if (outcome.method.starts_with("delaunay") && !outcome.failure.empty())
+      table.row({outcome.method, outcome.failure});
     if (!outcome.tetrahedra) continue;
     Cells row = {rowName(outcome, outcome.dual.has_value())};
     for (std::string& cell : qualityCells(*outcome.tetrahedra)) row.push_back(std::move(cell));

@@ -36,6 +36,10 @@ void makeMarchingCubes(Comparing& comparing, const baselines::CubeGrid& grid, Me
 void makeDelaunay(Comparing& comparing, const baselines::DelaunayOptions& options, MethodOutcome& outcome,
                   const RunContext& context);
 
+// The same with its boundary fitted, for a baseline that finished; makes and measures none of the rest anew.
+MethodOutcome fittedBaseline(Comparing& comparing, const baselines::CubeGrid& grid, const MethodOutcome& baseline,
+                             const RunContext& context);
+
 // Measures a tessellation; does nothing for a method that failed.
 void evaluateOutcome(Comparing& comparing, MethodOutcome& outcome, const RunContext& context);
 

@@ -2,6 +2,7 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
+#include <map>
 #include <utility>
 
 #include "comparing.hpp"
@@ -100,11 +101,38 @@ MethodOutcome equalDelaunay(Comparing& comparing, const MethodOutcome& rule, std
 std::vector<MethodOutcome> equalTriangles(Comparing& comparing, const baselines::CubeGrid& grid,
                                           const std::vector<MethodOutcome>& methods, const RunContext& context) {
   std::vector<MethodOutcome> results;
+  // Measures, keeps the figures and lets go of the tessellation.
+  const auto keep = [&](MethodOutcome&& outcome, std::int64_t target, const RunContext& ofMethod) {
+    evaluateOutcome(comparing, outcome, ofMethod);
+    if (!outcome.failure.empty()) ofMethod.warn(outcome.failure);
+    if (outcome.failure.empty() && !equal(outcome.boundaryTriangles, target)) {
+      ofMethod.warn("has " + std::to_string(outcome.boundaryTriangles) + " boundary triangles, where " +
+                    std::to_string(target) + " were aimed at");
+    }
+    comparing.secondsEvaluation += outcome.secondsEvaluation;
+    outcome.complex = {};
+    outcome.measurement.moments = {};
+    outcome.measurement.regularities = {};
+    outcome.measurement.boundaryFlags = {};
+    results.push_back(std::move(outcome));
+    context.throwIfCancelled();
+  };
+  std::map<std::int64_t, std::string> done;  // numbers of triangles with the CVT that they were run for
   for (const MethodOutcome& cvt : methods) {
     if (!isCvt(cvt.method) || cvt.method == kNotOptimized || !cvt.failure.empty()) continue;
     const std::int64_t target = cvt.boundaryTriangles;
+    // cvt4 has the triangles of cvt3, and so the same opponents.
+    if (const auto [place, isNew] = done.try_emplace(target, cvt.method); !isNew) {
+      const std::size_t count = results.size();
+      for (std::size_t i = 0; i < count; ++i) {
+        if (results[i].matched != place->second) continue;
+        results.push_back(results[i]);
+        results.back().matched = cvt.method;
+      }
+      continue;
+    }
     for (const MethodOutcome& rule : methods) {
-      if (isCvt(rule.method)) continue;
+      if (isCvt(rule.method) || rule.fit) continue;
       const RunContext ofMethod = named(context, rule.method + " as " + cvt.method);
       MethodOutcome outcome;
       if (!rule.failure.empty()) {
@@ -116,19 +144,14 @@ std::vector<MethodOutcome> equalTriangles(Comparing& comparing, const baselines:
       }
       outcome.method = rule.method;
       outcome.matched = cvt.method;
-      evaluateOutcome(comparing, outcome, ofMethod);
-      if (!outcome.failure.empty()) ofMethod.warn(outcome.failure);
-      if (outcome.failure.empty() && !equal(outcome.boundaryTriangles, target)) {
-        ofMethod.warn("has " + std::to_string(outcome.boundaryTriangles) + " boundary triangles, where " +
-                      std::to_string(target) + " were aimed at");
+      if (comparing.options.fitBaselines && outcome.failure.empty()) {
+        const RunContext ofFit = named(context, rule.method + "+fit as " + cvt.method);
+        MethodOutcome fitted = fittedBaseline(comparing, gridOfEdge(grid, outcome.cubeEdge), outcome, ofFit);
+        keep(std::move(outcome), target, ofMethod);
+        keep(std::move(fitted), target, ofFit);
+      } else {
+        keep(std::move(outcome), target, ofMethod);
       }
-      comparing.secondsEvaluation += outcome.secondsEvaluation;
-      outcome.complex = {};
-      outcome.measurement.moments = {};
-      outcome.measurement.regularities = {};
-      outcome.measurement.boundaryFlags = {};
-      results.push_back(std::move(outcome));
-      context.throwIfCancelled();
     }
   }
   return results;

@@ -225,7 +225,7 @@ Experiment parseExperiment(std::string_view text, const std::string& fileName, c
   constexpr std::int64_t kLargest = std::numeric_limits<std::int64_t>::max();
   TableReader reader(table, fileName, "");
   Experiment experiment;
-  experiment.methods = methodNames();
+  experiment.methods = defaultMethods();
   reader.read("name", experiment.name, "a text");
   reader.readList("methods", experiment.methods);
   for (const std::string& method : experiment.methods) {

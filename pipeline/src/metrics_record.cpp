@@ -15,7 +15,7 @@ Json optionsJson(const FormRecord& form, const WriteOptions& options) {
   Json formats = Json::array();
   for (const ExtraFormat format : options.formats) formats.push_back(toString(format));
   const cvt::TessellateOptions& cvt = options.tessellate;
-  return {{"method", toString(cvt.cap)},
+  return {{"method", toString(CvtMethod{cvt.cap, cvt.fit})},
           {"sites", cvt.sites},
           {"iterations", cvt.iterations},
           {"optimizer", toString(cvt.optimizer)},
@@ -64,6 +64,8 @@ Json clippingJson(const cvt::TessellateSummary& summary) {
           {"double_root_edges", clip.doubleRootEdges},
           {"caps", clip.loops},
           {"cap_points", clip.capPoints},
+          {"fitted_points", clip.fittedPoints},
+          {"unfitted_points", clip.unfittedPoints},
           {"chord_points", clip.chordPoints},
           {"function_evaluations", clip.evaluations},
           {"oracle_share", clip.oracleShare},

@@ -78,18 +78,31 @@ const char* toString(ExtraFormat format) {
 
 const char* toString(cvt::Optimizer optimizer) { return optimizer == cvt::Optimizer::lbfgs ? "lbfgs" : "lloyd"; }
 
-const char* toString(voronoi::CapKind cap) {
-  switch (cap) {
-    case voronoi::CapKind::flat:
-      return "flat";
-    case voronoi::CapKind::cvt1:
-      return "cvt1";
-    case voronoi::CapKind::cvt2:
-      return "cvt2";
-    case voronoi::CapKind::cvt3:
-      return "cvt3";
+namespace {
+
+struct NamedMethod {
+  const char* name;
+  CvtMethod method;
+};
+constexpr NamedMethod kCvtMethods[] = {
+    {"cvt1", {voronoi::CapKind::cvt1, false}},    {"cvt2", {voronoi::CapKind::cvt2, false}},
+    {"cvt3", {voronoi::CapKind::cvt3, false}},    {"cvt4", {voronoi::CapKind::cvt3, true}},
+    {"cvt1+fit", {voronoi::CapKind::cvt1, true}}, {"cvt2+fit", {voronoi::CapKind::cvt2, true}}};
+
+}  // namespace
+
+std::string toString(const CvtMethod& method) {
+  for (const NamedMethod& known : kCvtMethods) {
+    if (known.method.cap == method.cap && known.method.fit == method.fit) return known.name;
   }
-  throw UsageError("unknown kind of cap");
+  throw UsageError("flat caps are for the optimization only");
+}
+
+CvtMethod cvtMethod(const std::string& name) {
+  for (const NamedMethod& known : kCvtMethods) {
+    if (name == known.name) return known.method;
+  }
+  throw UsageError("unknown method " + name);
 }
 
 const char* toString(implicit::RootFinder finder) { return finder == implicit::RootFinder::itp ? "itp" : "bisection"; }

@@ -89,6 +89,7 @@ TessellateResult tessellateSites(const OptimizedSites& optimized, const implicit
   result.summary = optimized.summary;
   voronoi::ClipOptions clipOptions;
   clipOptions.cap = options.cap;
+  clipOptions.fit = options.fit;
   clipOptions.rootFinder = options.rootFinder;
   const voronoi::Diagram diagram = voronoi::buildDiagram(optimized.sites, siteDomain(f), context);
   voronoi::ClippedDiagram clipped = voronoi::clip(diagram, f, clipOptions, context);

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "voroform/baselines/delaunay_refinement.hpp"
+#include "voroform/baselines/fit_boundary.hpp"
 #include "voroform/baselines/marching_cubes.hpp"
 #include "voroform/core/run_context.hpp"
 #include "voroform/cvt/tessellate.hpp"
@@ -20,11 +21,13 @@
 
 namespace voroform::pipeline {
 
-// Names of methods, in the order of the tables: mc, delaunay, cvt1@0, cvt1, cvt2, cvt3.
+// Names of methods, in the order of the tables: mc, delaunay, cvt1@0, cvt1, cvt1+fit, cvt2, cvt2+fit, cvt3, cvt4.
 const std::vector<std::string>& methodNames();
+// Those that run if none are named: all but cvt1+fit and cvt2+fit.
+const std::vector<std::string>& defaultMethods();
 
 struct CompareOptions {
-  std::vector<std::string> methods = methodNames();
+  std::vector<std::string> methods = defaultMethods();
   // Cubes along the longest edge of the solid's bounding box, in [4, 1000].
   Index resolution = 50;
   // Of the CVT's optimization; "cvt1@0" takes none.
@@ -32,6 +35,9 @@ struct CompareOptions {
   // Lloyd steps of Delaunay refinement, and its other choices; cubeEdge, seed and timeLimit are set from here.
   baselines::DelaunayOptions delaunay;
   double delaunayTimeLimit = 0;  // seconds; 0: none
+  // Also fit the boundaries of Marching Cubes and Delaunay refinement to the surface, as cvt4's is: mc+fit and
+  // delaunay+fit, after each of theirs.
+  bool fitBaselines = false;
   // Also run Marching Cubes and Delaunay refinement finer, until they have as many boundary triangles as each CVT.
   bool equalTriangles = true;
   // Measure the dual tetrahedra of cvt1 against those of Delaunay refinement.
@@ -42,7 +48,7 @@ struct CompareOptions {
 std::vector<std::string> validate(const CompareOptions& options);
 
 struct MethodOutcome {
-  std::string method;  // of methodNames()
+  std::string method;  // of methodNames(), or mc+fit or delaunay+fit
   // Empty if the method finished; else why it has no result, e.g. "did not finish in 60 s".
   std::string failure;
   // For the equal-triangles table: the CVT method whose triangle count was aimed at, and the cube edge that gave it.
@@ -63,6 +69,7 @@ struct MethodOutcome {
   std::optional<cvt::TessellateSummary> cvt;
   std::optional<baselines::MarchingCubesSummary> marchingCubes;
   std::optional<baselines::DelaunaySummary> delaunay;
+  std::optional<baselines::BoundaryFit> fit;  // of mc+fit and delaunay+fit
   double seconds = 0;                 // of making the tessellation
   std::uint64_t peakMemoryBytes = 0;  // resident while it was made, the form included; 0: could not be measured
   double secondsEvaluation = 0;

@@ -25,7 +25,14 @@ namespace voroform::pipeline {
 enum class ExtraFormat { obj, off, stl, adjacency };
 const char* toString(ExtraFormat format);
 const char* toString(cvt::Optimizer optimizer);
-const char* toString(voronoi::CapKind cap);
+// A CVT's method by its name: cvt1, cvt2, cvt3, cvt4 (cvt3 fitted), cvt1+fit, cvt2+fit.
+struct CvtMethod {
+  voronoi::CapKind cap = voronoi::CapKind::cvt3;
+  bool fit = false;
+};
+std::string toString(const CvtMethod& method);
+// Throws UsageError for an unknown name.
+CvtMethod cvtMethod(const std::string& name);
 const char* toString(implicit::RootFinder finder);
 
 // All that is measured on a tessellation against its form but its accuracy.

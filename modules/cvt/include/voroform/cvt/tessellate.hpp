@@ -31,6 +31,8 @@ struct TessellateOptions {
   Optimizer optimizer = Optimizer::lbfgs;
   // Caps of the result. The optimization itself always uses CapKind::flat, the cheapest.
   voronoi::CapKind cap = voronoi::CapKind::cvt3;
+  // Fit the boundary to S in the mean square (voronoi::ClipOptions::fit): with the caps of cvt3 that is cvt4.
+  bool fit = false;
   implicit::RootFinder rootFinder = implicit::RootFinder::itp;
   // Stop when rms‖cᵢ − xᵢ‖/h is at most this; 0 never stops for it.
   double convergence = 5e-4;

@@ -1,0 +1,190 @@
+"""The evaluation that proves the claim: all methods on one input, measured alike, against what voroform claims.
+
+Run alone, it makes and checks one comparison: comparison.py --build FOLDER --resolution N INPUT
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import tempfile
+from pathlib import Path
+
+from report import Program, Report, main_report
+
+SCANS = ("kitten.xyz", "ball.ply", "hippo1.ply")
+SMOOTH_SHAPES = ("torus", "ellipsoid", "bumpy-sphere", "sphere")
+RESOLUTIONS = (50, 100)
+# Sites that the shapes are compared at; the resolution of Marching Cubes that gives about as many is looked for.
+SHAPE_SITES = 14474
+# Largest Dmean relative to Marching Cubes at equal resolution.
+SHAPE_BOUNDS = {"cvt2": 0.48, "cvt3": 0.30}
+SCAN_BOUNDS = {"cvt2": 0.62, "cvt3": 0.45}
+# Of cvt2, relative to Delaunay refinement.
+DELAUNAY_BOUND = 0.6
+# Mean and largest regularity of the kitten's cells from random sites after ten iterations.
+KITTEN_MEAN_REGULARITY = 0.0814
+KITTEN_LARGEST_REGULARITY = 0.10
+TIME_LIMIT = 900
+# Seconds of a whole comparison without Delaunay refinement, and of its evaluation per 15,000 cells.
+COMPARE_SECONDS = 60
+EVALUATION_SECONDS = 20
+EVALUATION_CELLS = 15000
+
+METHODS = ("mc", "delaunay", "cvt1@0", "cvt1", "cvt2", "cvt3")
+
+
+def compare(report: Report, program: Program, name: object, resolution: int, *more: object) -> dict | None:
+    """comparison.json of one run, or None if there is none."""
+    with tempfile.TemporaryDirectory() as folder:
+        outcome = program.run("compare", name, "-o", folder, "--resolution", resolution, *more)
+        report.equal("exit code", outcome.returncode, 0)
+        path = Path(folder) / "comparison.json"
+        if not path.exists():
+            print(outcome.stderr)
+            return None
+        print((Path(folder) / "comparison.md").read_text(encoding="utf-8"))
+        return json.loads(path.read_text(encoding="utf-8"))
+
+
+def check_certificates(report: Report, comparison: dict, expected: tuple[str, ...] = METHODS) -> None:
+    report.equal("methods", tuple(name for name in METHODS if name in comparison["methods"]), expected)
+    for name, method in comparison["methods"].items():
+        if method["failure"]:
+            report.information(f"{name} failed", method["failure"])
+            report.check(f"{name} has a result", False, "= True", name == "delaunay")
+            continue
+        valid = method["validity"]["valid"]
+        if name == "delaunay":  # CGAL's guarantee, not ours
+            report.information("delaunay is valid", valid)
+        else:
+            report.equal(f"{name} is valid", valid, True)
+        report.equal(f"{name} samples without a nearest point", unfound(method), 0)
+    equal = comparison["equal_triangles"] or {}
+    for name, group in equal.items():
+        for baseline in ("mc", "delaunay"):
+            if baseline in group and not group[baseline]["failure"]:
+                ours = comparison["methods"][name]["accuracy"]["dmean"]
+                theirs = group[baseline]["accuracy"]["dmean"]
+                report.information(f"{name} Dmean / {baseline} at equal triangles", f"{ours / theirs:.4f}")
+
+
+def unfound(method: dict) -> int:
+    return sum(direction["unfound"] for direction in method["accuracy"]["per_direction"].values())
+
+
+def check_ratios(report: Report, comparison: dict, bounds: dict[str, float]) -> None:
+    methods = comparison["methods"]
+    for name, bound in bounds.items():
+        report.at_most(f"{name} Dmean / mc", methods[name]["relative_to"]["mc"]["dmean"], bound)
+    if not methods["delaunay"]["failure"]:
+        report.at_most("cvt2 Dmean / delaunay", methods["cvt2"]["relative_to"]["delaunay"]["dmean"], DELAUNAY_BOUND)
+
+
+def check_regularity(report: Report, comparison: dict) -> None:
+    for name, method in comparison["methods"].items():
+        if method["failure"]:
+            continue
+        statistics = method["regularity"]["all"]
+        report.information(f"{name} mean and largest G", f"{statistics['mean']:.5f}, {statistics['max']:.4f}")
+
+
+def check_dual(report: Report, comparison: dict) -> None:
+    """The dual of cvt1 against Delaunay refinement in each mean; the second criterion is better when smaller."""
+    methods = comparison["methods"]
+    if methods["delaunay"]["failure"]:
+        return
+    dual = methods["cvt1"]["quality"]["dual"]
+    pairs = (("vq", dual["tetrahedra"], methods["delaunay"]["quality"]["tetrahedra"]),
+             ("sq", dual["boundary_triangles"], methods["delaunay"]["quality"]["boundary_triangles"]))
+    for prefix, ours, theirs in pairs:
+        for number in (1, 2, 3, 4):
+            key = f"{prefix}{number}"
+            a, b = ours["mean"][key], theirs["mean"][key]
+            better = a < b if number == 2 else a > b
+            report.check(f"{key.upper()} of the dual of cvt1", a, f"better than delaunay's {b:.6g}", better)
+
+
+def resolution_for(report: Report, program: Program, name: str, sites: int) -> int:
+    """The resolution whose number of inside cubes comes nearest to `sites`."""
+    low, high = 8, 400
+    counts: dict[int, int] = {}
+
+    def count(resolution: int) -> int:
+        if resolution not in counts:
+            with tempfile.TemporaryDirectory() as folder:
+                program.run("compare", name, "-o", folder, "--resolution", resolution, "--methods", "mc",
+                            "--no-equal-triangles", show=False)
+                record = json.loads((Path(folder) / "comparison.json").read_text(encoding="utf-8"))
+                counts[resolution] = record["sites"]
+        return counts[resolution]
+
+    while high - low > 1:
+        middle = (low + high) // 2
+        if count(middle) < sites:
+            low = middle
+        else:
+            high = middle
+    best = min((low, high), key=lambda resolution: abs(count(resolution) - sites))
+    report.information(f"resolution of {name} for about {sites} sites", f"{best}: {count(best)} sites")
+    return best
+
+
+def check(report: Report, program: Program, data: Path) -> None:
+    limit = ("--delaunay-time-limit", TIME_LIMIT)
+    for name in (*(data / scan for scan in SCANS), "shape:torus"):
+        for resolution in RESOLUTIONS:
+            report.start(f"evaluation: {Path(str(name)).name} at resolution {resolution}")
+            comparison = compare(report, program, name, resolution, *limit)
+            if comparison is None:
+                continue
+            check_certificates(report, comparison)
+            check_regularity(report, comparison)
+            stem = Path(str(name)).name
+            if stem in ("kitten.xyz", "ball.ply"):
+                check_ratios(report, comparison, SCAN_BOUNDS)
+            if stem != "hippo1.ply":
+                check_dual(report, comparison)
+            if stem == "kitten.xyz":
+                statistics = comparison["methods"]["cvt1"]["regularity"]["all"]
+                report.at_most("kitten: mean G", statistics["mean"], KITTEN_MEAN_REGULARITY)
+                report.at_most("kitten: largest G", statistics["max"], KITTEN_LARGEST_REGULARITY)
+
+    for shape in SMOOTH_SHAPES:
+        report.start(f"evaluation: shape:{shape} at about {SHAPE_SITES} sites")
+        resolution = resolution_for(report, program, f"shape:{shape}", SHAPE_SITES)
+        comparison = compare(report, program, f"shape:{shape}", resolution, *limit)
+        if comparison is not None:
+            check_certificates(report, comparison)
+            check_ratios(report, comparison, SHAPE_BOUNDS)
+
+    for name in ("shape:torus", data / "kitten.xyz"):
+        report.start(f"evaluation: time, {Path(str(name)).name} at resolution 100")
+        methods = tuple(method for method in METHODS if method != "delaunay")
+        comparison = compare(report, program, name, 100, "--methods", ",".join(methods))
+        if comparison is not None:
+            check_certificates(report, comparison, methods)
+            seconds = comparison["seconds"]
+            report.at_most("seconds in all", seconds["total"], COMPARE_SECONDS)
+            cells = comparison["sites"]
+            report.information("sites, seconds of evaluation", f"{cells}, {seconds['evaluation']:.2f}")
+            scaled = seconds["evaluation"] * min(1.0, EVALUATION_CELLS / cells)
+            report.at_most("seconds of evaluation per 15,000 cells", scaled, EVALUATION_SECONDS)
+
+
+if __name__ == "__main__":
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--build", type=Path, required=True)
+    parser.add_argument("--resolution", type=int, required=True)
+    parser.add_argument("input")
+    options = parser.parse_args()
+
+    def one_run(report: Report) -> None:
+        report.start(f"{options.input} at resolution {options.resolution}")
+        comparison = compare(report, Program(options.build, report), options.input, options.resolution)
+        if comparison is not None:
+            check_certificates(report, comparison)
+            check_regularity(report, comparison)
+            check_dual(report, comparison)
+
+    main_report(one_run)
