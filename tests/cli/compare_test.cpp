@@ -86,7 +86,7 @@ TEST_F(Compare, MeasuresAllMethodsAlike) {
     EXPECT_EQ(accuracy["cell_size"], h) << name;
     EXPECT_EQ(accuracy["unfound"], 0) << name;
     // A chord of length h stays within h²/8 of the unit sphere.
-    EXPECT_GT(accuracy["dmean"].get<double>(), 0.02 * h * h) << name;
+    EXPECT_GT(accuracy["dmean"].get<double>(), 0.005 * h * h) << name;
     EXPECT_LT(accuracy["dmean"].get<double>(), 0.3 * h * h) << name;
     EXPECT_GE(accuracy["drmse"], accuracy["dmean"]) << name;
     EXPECT_GE(accuracy["dmax"], accuracy["drmse"]) << name;
@@ -161,7 +161,7 @@ TEST_F(Compare, GivesTheSameBitsForAnyNumberOfThreads) {
   removeCost(two);
   EXPECT_EQ(one, two);
   // The digests of all tessellations are among what is equal.
-  EXPECT_EQ(one["sha256"].size(), 12U);
+  EXPECT_EQ(one["sha256"].size(), 2 * one["methods"].size());
 }
 
 TEST_F(Compare, AMethodThatRunsOutOfTimeIsAResult) {
