@@ -93,7 +93,24 @@ class CellCapper {
     }
     const double area = frame.normal.norm();
     frame.normal = area > 0 ? Vec3(frame.normal / area) : Vec3(Vec3::Zero());
+    if (options_.cap == CapKind::cvt2 || options_.cap == CapKind::cvt3) frame.centroid = centroidByArea(loop, frame);
     return frame;
+  }
+
+  // The centroid of the fan about the mean of the loop's points: these crowd where the cell has short edges, and a fan
+  // about the one has larger triangles than a fan about the other.
+  Vec3 centroidByArea(std::span<const Index> loop, const LoopFrame& frame) const {
+    double total = 0;
+    Vec3 moment = Vec3::Zero();
+    Vec3 previous = position(loop.back()) - frame.centroid;
+    for (const Index point : loop) {
+      const Vec3 current = position(point) - frame.centroid;
+      const double area = previous.cross(current).norm();
+      total += area;
+      moment += area * (previous + current) / 3;
+      previous = current;
+    }
+    return total > 0 ? Vec3(frame.centroid + moment / total) : frame.centroid;
   }
 
   double reachInCell(const Vec3& p, const Vec3& d) const { return voronoi::reachInCell(diagram_, site_, p, d); }

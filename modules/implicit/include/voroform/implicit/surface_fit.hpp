@@ -24,9 +24,9 @@ struct FitProblem {
 struct FitOptions {
   // Weight of the shifts themselves, Σ (a third of the area around vertex i)·sᵢ², against Σ area·distance²; at least 0.
   // It keeps directions almost tangent to S from running far for little.
-  double damping = 0.05;
+  double damping = 0.02;
   // Weight of the normals: of ∫ area·|∇δ|² against ∫ δ², ∇ along the triangle; at least 0.
-  double normalWeight = 0.1;
+  double normalWeight = 0.05;
   // Rounds of sampling and solving, at least 1; each begins with the vertices where the last one left them.
   int rounds = 1;
 };
