@@ -268,7 +268,8 @@ Comparison compare(const Form& form, const CompareOptions& options, const RunCon
       makeCvt(comparing, sites, result.sites, outcome, ofMethod);
     }
     evaluateOutcome(comparing, outcome, ofMethod);
-    if (method == "cvt1" && options.dualTetrahedra && outcome.failure.empty()) {
+    const bool wantsDual = options.dualTetrahedra && contains(options.methods, "delaunay");
+    if (method == "cvt1" && wantsDual && outcome.failure.empty()) {
       evaluateDual(comparing, outcome, ofMethod);
     }
     if (!outcome.failure.empty()) ofMethod.warn(outcome.failure);

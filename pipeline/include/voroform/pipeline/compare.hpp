@@ -40,7 +40,7 @@ struct CompareOptions {
   bool fitBaselines = false;
   // Also run Marching Cubes and Delaunay refinement finer, until they have as many boundary triangles as each CVT.
   bool equalTriangles = true;
-  // Measure the dual tetrahedra of cvt1 against those of Delaunay refinement.
+  // Measure the dual tetrahedra of cvt1 against those of Delaunay refinement, if that is among the methods.
   bool dualTetrahedra = true;
   std::uint64_t seed = 0;
   int threads = 0;
