@@ -76,6 +76,7 @@ std::vector<Command> addCommands(CLI::App& app, Settings& settings) {
   addOutputOption(*compare, settings, "Folder for the results");
   addFormOptions(*compare, settings);
   addCompareOptions(*compare, settings);
+  addSingleComparisonOptions(*compare, settings);
   commands.push_back({compare, runCompare});
 
   CLI::App* rank = app.add_subcommand("rank", "Compare the methods on many inputs and rank them");

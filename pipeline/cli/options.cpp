@@ -229,13 +229,19 @@ void addCompareOptions(CLI::App& command, Settings& settings) {
       ->capture_default_str();
   command.add_flag("--no-equal-triangles", settings.noEqualTriangles,
                    "Leave out the comparison at equal numbers of boundary triangles");
-  command.add_flag("--fit-baselines", settings.fitBaselines,
-                   "Also fit the boundaries of Marching Cubes and Delaunay refinement to the surface, as cvt4's is");
-  command.add_flag("--no-dual", settings.noDual, "Leave out the dual tetrahedra of cvt1");
+  command.add_flag("--no-dual", settings.noDual,
+                   "Leave out the dual tetrahedra of cvt1, which are measured beside those of delaunay");
   command.add_flag(
       "--no-rotation", settings.noRotation,
       "Leave shapes and meshes as they lie; else they are turned by a rotation that follows from the seed, "
       "for Marching Cubes is exact on planes along its grid");
+}
+
+void addSingleComparisonOptions(CLI::App& command, Settings& settings) {
+  command.add_flag("--accuracy-samples", settings.accuracySamples,
+                   "Write each method's samples with their nearest points, distances and angles");
+  command.add_flag("--fit-baselines", settings.fitBaselines,
+                   "Also fit the boundaries of Marching Cubes and Delaunay refinement to the surface, as cvt4's is");
 }
 
 void addRankOptions(CLI::App& command, Settings& settings) {
@@ -364,6 +370,7 @@ pipeline::CompareOptions compareOptions(const Settings& settings) {
   options.delaunayTimeLimit = settings.delaunayTimeLimit;
   options.equalTriangles = !settings.noEqualTriangles;
   options.fitBaselines = settings.fitBaselines;
+  options.accuracySamples = settings.accuracySamples;
   options.dualTetrahedra = !settings.noDual;
   options.seed = settings.seed;
   options.threads = effectiveThreads(settings);

@@ -37,6 +37,7 @@ struct Settings {
   std::string method = "cvt4";
   bool fit = false;
   bool fitBaselines = false;
+  bool accuracySamples = false;
   Index sites = 15000;
   int iterations = 10;
   std::string optimizer = "lbfgs";
@@ -75,6 +76,8 @@ void addFormOptions(CLI::App& command, Settings& settings);
 void addTessellationOptions(CLI::App& command, Settings& settings);
 // Of commands that run several methods.
 void addCompareOptions(CLI::App& command, Settings& settings);
+// What compare has and rank has not.
+void addSingleComparisonOptions(CLI::App& command, Settings& settings);
 void addRankOptions(CLI::App& command, Settings& settings);
 void addReproduceOptions(CLI::App& command, Settings& settings);
 

@@ -237,7 +237,9 @@ void evaluateOutcome(Comparing& comparing, MethodOutcome& outcome, const RunCont
   accuracy.cellSize = comparing.cellSize;
   accuracy.seed = comparing.options.seed;
   try {
-    outcome.accuracy = metrics::accuracy(complex, *comparing.form.function, comparing.surface, accuracy, context);
+    const bool keepsPairs = comparing.options.accuracySamples && outcome.matched.empty();
+    outcome.accuracy = metrics::accuracy(complex, *comparing.form.function, comparing.surface, accuracy, context,
+                                         keepsPairs ? &outcome.pairs : nullptr);
   } catch (const MethodError& error) {
     context.warn(std::string("the accuracy could not be measured: ") + error.what());
   }

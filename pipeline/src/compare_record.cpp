@@ -1,6 +1,7 @@
 // The comparison on disk.
 #include <array>
 #include <fstream>
+#include <iomanip>
 #include <string>
 
 #include "comparing.hpp"
@@ -195,6 +196,24 @@ void writeText(const fs::path& path, const std::string& text) {
   file.commit();
 }
 
+// A row a sample, in world coordinates, all digits.
+void writePairs(const fs::path& path, const metrics::AccuracyPairs& pairs, const Frame& frame) {
+  OutputFile file(path);
+  std::ostream& out = file.stream();
+  out << std::setprecision(17) << "from,x,y,z,nearest_x,nearest_y,nearest_z,distance,angle\n";
+  const auto write = [&](const char* from, const std::vector<metrics::AccuracyPair>& list) {
+    for (const metrics::AccuracyPair& pair : list) {
+      const Vec3 sample = frame.origin + pair.sample;
+      const Vec3 nearest = frame.origin + pair.nearest;
+      out << from << ',' << sample.x() << ',' << sample.y() << ',' << sample.z() << ',' << nearest.x() << ','
+          << nearest.y() << ',' << nearest.z() << ',' << pair.distance << ',' << pair.angle << '\n';
+    }
+  };
+  write("form", pairs.fromForm);
+  write("boundary", pairs.fromBoundary);
+  file.commit();
+}
+
 }  // namespace
 
 std::vector<std::string> writeComparison(const Form& form, const Comparison& comparison, const fs::path& folder,
@@ -209,6 +228,10 @@ std::vector<std::string> writeComparison(const Form& form, const Comparison& com
     const mesh::BoundarySurface surface = mesh::boundarySurface(outcome.complex);
     store.put(outcome.method + "/surface.ply",
               [&](const fs::path& path) { mesh::writeSurfacePly(path, surface, outcome.complex); });
+    if (comparison.options.accuracySamples) {
+      store.put(outcome.method + "/accuracy-samples.csv",
+                [&](const fs::path& path) { writePairs(path, outcome.pairs, outcome.complex.frame); });
+    }
     context.throwIfCancelled();
   }
   Json json = comparisonJson(form, comparison);

@@ -150,6 +150,32 @@ TEST_F(Compare, FitsWhatItIsAskedTo) {
   }
 }
 
+TEST_F(Compare, WritesTheSamplesItMeasuredWith) {
+  const Outcome outcome =
+      compare("shape:sphere", "out", {"--methods", "cvt2", "--no-equal-triangles", "--accuracy-samples"});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  std::stringstream file(readFile(folder_ / "out/cvt2/accuracy-samples.csv"));
+  std::string line;
+  std::getline(file, line);
+  EXPECT_EQ(line, "from,x,y,z,nearest_x,nearest_y,nearest_z,distance,angle");
+  double sum = 0;
+  int count = 0;
+  while (std::getline(file, line)) {
+    const std::vector<std::string> cells = split(line, ',');
+    ASSERT_EQ(cells.size(), 9U);
+    if (cells[0] != "boundary") continue;
+    // Boundary samples have their nearest points on the unit sphere.
+    const auto at = [&](std::size_t i) { return std::stod(cells[i]); };
+    EXPECT_NEAR(std::hypot(at(4), at(5), at(6)), 1, 1e-8);
+    EXPECT_NEAR(std::abs(std::hypot(at(1), at(2), at(3)) - 1), at(7), 1e-8);
+    sum += at(7);
+    ++count;
+  }
+  const Json direction = record("out")["methods"]["cvt2"]["accuracy"]["per_direction"]["boundary_to_form"];
+  EXPECT_EQ(count, direction["samples"].get<int>());
+  EXPECT_NEAR(sum / count, direction["mean"].get<double>(), 1e-12);
+}
+
 TEST_F(Compare, TablesHoldARowForEachMethod) {
   const Outcome outcome = compare("shape:sphere", "out", {"--methods", "cvt2,mc", "--no-equal-triangles"});
   ASSERT_EQ(outcome.exitCode, 0) << outcome.err;

@@ -35,6 +35,8 @@ struct CompareOptions {
   // Lloyd steps of Delaunay refinement, and its other choices; cubeEdge, seed and timeLimit are set from here.
   baselines::DelaunayOptions delaunay;
   double delaunayTimeLimit = 0;  // seconds; 0: none
+  // Keep the samples with their nearest points, for writeComparison to write; not those at equal triangles.
+  bool accuracySamples = false;
   // Also fit the boundaries of Marching Cubes and Delaunay refinement to the surface, as cvt4's is: mc+fit and
   // delaunay+fit, after each of theirs.
   bool fitBaselines = false;
@@ -58,6 +60,7 @@ struct MethodOutcome {
   mesh::PolyhedralComplex complex;
   Measurement measurement;
   std::optional<metrics::Accuracy> accuracy;
+  metrics::AccuracyPairs pairs;  // with accuracySamples
   Index cells = 0;
   Index vertices = 0;
   Index faces = 0;
@@ -70,8 +73,8 @@ struct MethodOutcome {
   std::optional<baselines::MarchingCubesSummary> marchingCubes;
   std::optional<baselines::DelaunaySummary> delaunay;
   std::optional<baselines::BoundaryFit> fit;  // of mc+fit and delaunay+fit
-  double seconds = 0;                 // of making the tessellation
-  std::uint64_t peakMemoryBytes = 0;  // resident while it was made, the form included; 0: could not be measured
+  double seconds = 0;                         // of making the tessellation
+  std::uint64_t peakMemoryBytes = 0;          // resident while it was made, the form included; 0: could not be measured
   double secondsEvaluation = 0;
 };
 
@@ -106,7 +109,8 @@ std::string comparisonMarkdown(const Form& form, const Comparison& comparison);
 std::string comparisonCsv(const std::vector<MethodOutcome>& outcomes);
 
 // Writes comparison.json, .csv and .md, comparison-equal-triangles.csv, the form's files, and a folder of each method's
-// cells.vtu and surface.ply: all of them or none. Returns the names of the files written.
+// cells.vtu, surface.ply and, if they were kept, accuracy-samples.csv: all of them or none. Returns the names of the
+// files written.
 std::vector<std::string> writeComparison(const Form& form, const Comparison& comparison,
                                          const std::filesystem::path& folder, const RunContext& context);
 
