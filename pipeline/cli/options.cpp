@@ -64,11 +64,12 @@ constexpr pipeline::ExtraFormat kFormats[] = {pipeline::ExtraFormat::obj, pipeli
                                               pipeline::ExtraFormat::stl, pipeline::ExtraFormat::adjacency};
 
 // A list of these names, separated by commas; `thing` is what one of them is.
-CLI::Validator someOf(const std::string& thing, const std::vector<std::string>& names) {
+CLI::Validator someOf(const std::string& thing, const std::vector<std::string>& names, bool orNone = false) {
   std::string all;
   for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
   CLI::Validator validator;
-  validator.name(thing + "s").description("of " + all).operation([thing, names, all](std::string& input) {
+  validator.name(thing + "s").description("of " + all).operation([thing, names, all, orNone](std::string& input) {
+    if (!orNone && split(input).empty()) return "no " + thing + "; expected some of " + all;
     for (const std::string& part : split(input)) {
       if (std::find(names.begin(), names.end(), part) == names.end()) {
         return "unknown " + thing + " " + part + "; expected some of " + all;
@@ -186,7 +187,7 @@ void addTessellationOptions(CLI::App& command, Settings& settings) {
       ->capture_default_str();
   command.add_option("--formats", settings.formats, "Further files to write, separated by commas")
       ->type_name("LIST")
-      ->check(someOf("format", formatNames()))
+      ->check(someOf("format", formatNames(), true))
       ->capture_default_str();
   command.add_flag("--no-accuracy", settings.noAccuracy,
                    "Do not measure the accuracy, which takes about half of the run");

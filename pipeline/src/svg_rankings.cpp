@@ -12,7 +12,7 @@ namespace voroform::pipeline {
 namespace {
 
 // In pixels.
-constexpr double kPanelWidth = 300;
+constexpr double kPanelWidth = 420;
 constexpr double kPanelHeight = 330;
 constexpr double kBarHeight = 130;
 constexpr double kMargin = 20;
@@ -21,7 +21,8 @@ constexpr double kLegendHeight = 40;
 constexpr std::size_t kPanelsPerRow = 4;
 
 // From first to last place; told apart in gray as well.
-constexpr std::array<const char*, 6> kColors = {"#00441b", "#238b45", "#74c476", "#c7e9c0", "#fdd49e", "#d7301f"};
+constexpr std::array<const char*, 9> kColors = {"#00441b", "#1b7837", "#5aae61", "#a6dba0", "#d9f0d3",
+                                                "#fee0b6", "#fdb863", "#e08214", "#b35806"};
 
 std::string escaped(const std::string& text) {
   std::string result;
@@ -104,7 +105,7 @@ void drawBars(Drawing& drawing, const CriterionRanking& ranking, std::size_t pla
           x, bottom, 0.76 * slot, height, color,
           ranking.methods[j].method + ", place " + std::to_string(place + 1) + ": " + std::to_string(count));
       if (height >= 11) {
-        const bool dark = color == kColors[0] || color == kColors[1] || color == kColors[5];
+        const bool dark = color == kColors[0] || color == kColors[1] || color == kColors[8];
         drawing.text(x + 0.38 * slot, bottom + 0.5 * height + 3.5, std::to_string(count), 10, "middle",
                      dark ? "#ffffff" : "#111111");
       }

@@ -9,12 +9,15 @@
 #include <chrono>
 #include <cmath>
 #include <cstdlib>
+#include <memory>
 #include <numbers>
 #include <stdexcept>
 #include <thread>
 
+#include "support/surface_meshes.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/random.hpp"
+#include "voroform/implicit/mesh_distance.hpp"
 #include "voroform/implicit/shapes.hpp"
 #include "voroform/mesh/validate.hpp"
 
@@ -200,6 +203,26 @@ TEST(DelaunayRefinement, FacetDistanceIsACriterionIfAsked) {
   options.facetDistance = 0.002;
   const auto fine = mesh::boundarySurface(meshOf(implicit::sphere(1), options).complex).mesh.triangles.size();
   EXPECT_GT(fine, 3 * coarse);
+}
+
+// Flat facets make tetrahedra without volume, whose duals reach as far as rounding lets them.
+TEST(DelaunayRefinement, PutsVerticesOnFlatFacets) {
+  const auto mesh = std::make_shared<const mesh::TriangleMesh>(testing::icosphere(3, 1));
+  const implicit::ImplicitPtr forms[] = {
+      implicit::transformed(implicit::box(Vec3(2, 2, 2)), randomRotation(3), Vec3::Zero()),
+      implicit::meshDistance(mesh, {})};
+  for (const implicit::ImplicitPtr& f : forms) {
+    const DelaunayResult result = meshOf(f, refineOnly(2.0 / 30));
+    double worst = 0;
+    for (Index face = 0; face < result.complex.faceCount(); ++face) {
+      if (!result.complex.isBoundary(face)) continue;
+      for (const Index v : result.complex.face(face)) {
+        worst = std::max(worst, std::abs(f->value(result.complex.vertices[static_cast<std::size_t>(v)])));
+      }
+    }
+    EXPECT_LT(worst, 1e-9);
+    EXPECT_GT(result.complex.cellCount, 1000);
+  }
 }
 
 TEST(DelaunayRefinement, MeshesEveryPiece) {

@@ -7,6 +7,7 @@
 #include <gtest/gtest.h>
 
 #include "support/implicit_laws.hpp"
+#include "support/surface_meshes.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/random.hpp"
 #include "voroform/implicit/shapes.hpp"
@@ -96,6 +97,19 @@ ImplicitPtr distanceTo(TriangleMesh mesh, std::vector<std::string>* warnings = n
     if (level == LogLevel::warning && warnings != nullptr) warnings->emplace_back(message);
   };
   return meshDistance(std::make_shared<TriangleMesh>(std::move(mesh)), context);
+}
+
+TEST(MeshDistance, IsPositiveHoweverFarAway) {
+  const auto mesh = std::make_shared<const mesh::TriangleMesh>(testing::icosphere(2, 1));
+  const ImplicitPtr f = meshDistance(mesh, {});
+  for (std::uint64_t i = 0; i < 400; ++i) {
+    const Vec3 direction = randomInBox(5, RandomStream::test, i, Box3(Vec3::Constant(-1), Vec3::Constant(1)));
+    for (const double factor : {3.0, 1e8, 1e15, 1e17, 1e30}) {
+      const Vec3 p = factor * direction.normalized();
+      EXPECT_GT(f->value(p), 0) << factor;
+      EXPECT_GE(f->clearance(p), 0) << factor;
+    }
+  }
 }
 
 TEST(MeshDistance, OfACubeIsThatOfTheBox) {

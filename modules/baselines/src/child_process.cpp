@@ -80,6 +80,15 @@ void volunteerWhenMemoryRunsOut() {
   ::close(file);
 }
 
+// What a library prints or dumps when it fails is nobody's result: it goes nowhere, and into no folder of the user's.
+void keepQuiet() {
+  const int nowhere = ::open("/dev/null", O_RDWR | O_CLOEXEC);
+  if (nowhere >= 0) {
+    for (const int standard : {STDOUT_FILENO, STDERR_FILENO}) ::dup2(nowhere, standard);
+  }
+  static_cast<void>(::chdir("/proc") == 0);  // nobody can create a file there
+}
+
 // The child's whole life. Leaves by _exit: what the parent registered to run at its own end is not the child's to run.
 [[noreturn]] void live(const std::function<std::vector<std::byte>()>& work, const AnonymousFile& file, pid_t parent) {
   ::prctl(PR_SET_PDEATHSIG, SIGKILL);
@@ -87,6 +96,7 @@ void volunteerWhenMemoryRunsOut() {
   // The terminal interrupts parent and child alike. Only the parent answers, and then kills the child.
   for (const int number : {SIGINT, SIGTERM, SIGHUP}) ::signal(number, SIG_IGN);
   volunteerWhenMemoryRunsOut();
+  keepQuiet();
   int code = kAnswered;
   std::vector<std::byte> bytes;
   try {

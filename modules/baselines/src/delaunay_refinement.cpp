@@ -2,6 +2,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <sstream>
 
 #include "child_process.hpp"
 #include "mesh_solid.hpp"
@@ -19,6 +20,17 @@ std::string shortNumber(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%g", number);
   return text;
+}
+
+// A library's message of several lines, without the one that names a file of its own.
+std::string inOneLine(const std::string& message) {
+  std::string result;
+  std::istringstream stream(message);
+  for (std::string line; std::getline(stream, line);) {
+    if (line.empty() || line.starts_with("File")) continue;
+    result += (result.empty() ? "" : "; ") + line;
+  }
+  return result;
 }
 
 }  // namespace
@@ -73,7 +85,7 @@ DelaunayResult delaunayRefinement(const implicit::ImplicitFunction& f, const Fra
       break;
     case ChildEnd::failed:
       summary.status = DelaunayStatus::failed;
-      summary.message = report.message;
+      summary.message = inOneLine(report.message);
       break;
   }
   summary.seconds = watch.seconds();

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <utility>
 #include <vector>
@@ -95,10 +96,26 @@ class SolidDomain : public LabeledDomain {
 
   // A point, the index of the surface, and the dimension 2; dimension 0 if the ends are on the same side.
   Intersection intersect(const Point& from, const Point& to) const {
-    const Vec3 a = fromCgal(from);
-    const Vec3 b = fromCgal(to);
+    Vec3 a = fromCgal(from);
+    Vec3 b = fromCgal(to);
     if (inside(f_, a) == inside(f_, b)) return {};
+    // Duals of flat tetrahedra reach as far as 10¹⁷ solids away, where a share of the way has no digits left for a
+    // place near S. The end beyond the box is outside, and so is where the way to it leaves the box.
+    if (!search_.box.contains(b)) b = whereItLeaves(a, b);
+    if (!search_.box.contains(a)) a = whereItLeaves(b, a);
     return {toCgal(surfacePoint(f_, a, b, search_.tolerance)), surfaceIndex(), 2};
+  }
+
+  // On the box's border, from a point within it.
+  Vec3 whereItLeaves(const Vec3& within, const Vec3& beyond) const {
+    const Vec3 direction = (beyond - within).stableNormalized();
+    double reach = std::numeric_limits<double>::infinity();
+    for (int axis = 0; axis < 3; ++axis) {
+      if (direction[axis] == 0) continue;
+      const double border = direction[axis] > 0 ? search_.box.max()[axis] : search_.box.min()[axis];
+      reach = std::min(reach, (border - within[axis]) / direction[axis]);
+    }
+    return within + std::max(reach, 0.0) * direction;
   }
 
   const implicit::ImplicitFunction& f_;

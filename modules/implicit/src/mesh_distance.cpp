@@ -158,6 +158,8 @@ class MeshDistance final : public ImplicitFunction {
 
   double signedDistance(const Vec3& p, const mesh::ClosestTriangle::Hit& hit) const {
     if (hit.triangle == kNone) return std::numeric_limits<double>::infinity();  // no place is near to infinity
+    // Far away the heights below are all rounding.
+    if (!box_.contains(p)) return hit.distance;
     const Vec3& normal = normalOf(hit);
     if (parity_ || normal.isZero(0)) return signByRays(p, hit) * hit.distance;
     // Above the inside of a triangle the height is more exact than the difference to the foot.
