@@ -199,7 +199,6 @@ Tetrahedra meshSolid(const implicit::ImplicitFunction& f, const DelaunayOptions&
   CGAL::set_error_handler(silent);
   CGAL::get_default_random() =
       CGAL::Random(static_cast<unsigned int>(randomBits(options.seed, RandomStream::sampling, 3)));
-  const SolidDomain domain(f, searchOf(f, options));
   const double size = std::numbers::sqrt3 / 2 * options.cubeEdge;
   namespace given = CGAL::parameters;
   const Criteria criteria(given::facet_angle = options.facetAngle, given::facet_size = size,
@@ -207,8 +206,18 @@ Tetrahedra meshSolid(const implicit::ImplicitFunction& f, const DelaunayOptions&
                           given::cell_radius_edge_ratio = options.radiusEdgeRatio, given::cell_size = size);
 
   Stopwatch watch;
-  Complex complex = CGAL::make_mesh_3<Complex>(domain, criteria, given::no_lloyd(), given::no_odt(),
-                                               given::no_perturb(), given::no_exude());
+  // Refinement grows from the facets between the first points that are dual to a crossing of S. Between few points on
+  // thin parts there may be none: more points then.
+  constexpr std::size_t kMostPoints = 2000;
+  constexpr std::size_t kMorePoints = 8;
+  SurfaceSearch search = searchOf(f, options);
+  Complex complex;
+  for (; search.pointsPerPiece <= kMostPoints; search.pointsPerPiece *= kMorePoints) {
+    complex = CGAL::make_mesh_3<Complex>(SolidDomain(f, search), criteria, given::no_lloyd(), given::no_odt(),
+                                         given::no_perturb(), given::no_exude());
+    if (complex.number_of_cells_in_complex() > 0) break;
+  }
+  const SolidDomain domain(f, search);
   const double secondsRefinement = watch.seconds();
   watch.restart();
   optimize(complex, domain, options);

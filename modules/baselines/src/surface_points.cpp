@@ -14,7 +14,6 @@ namespace voroform::baselines {
 
 namespace {
 
-constexpr std::size_t kMostPointsPerPiece = 24;
 // A piece gets so many points however small it is: three points of a plane, and one to tell inside from outside.
 constexpr std::size_t kFewestPointsPerPiece = 4;
 
@@ -127,11 +126,11 @@ Pieces joinPieces(const SignGrid& grid, const std::vector<Crossing>& found) {
 
 // Farthest-point sampling: each point next is the one farthest from those before, until they lie closer than `spacing`.
 std::vector<std::size_t> spread(const std::vector<Vec3>& points, const std::vector<std::size_t>& members,
-                                double spacing) {
+                                double spacing, std::size_t most) {
   std::vector<std::size_t> chosen;
   std::vector<double> squaredDistance(members.size(), std::numeric_limits<double>::infinity());
   std::size_t next = 0;
-  while (chosen.size() < std::min(kMostPointsPerPiece, members.size())) {
+  while (chosen.size() < std::min(most, members.size())) {
     if (chosen.size() >= kFewestPointsPerPiece && squaredDistance[next] < spacing * spacing) break;
     chosen.push_back(members[next]);
     const Vec3& point = points[members[next]];
@@ -174,7 +173,7 @@ std::vector<Vec3> initialSurfacePoints(const implicit::ImplicitFunction& f, cons
   }
   std::vector<Vec3> points;
   for (const auto& [root, piece] : members) {
-    for (const std::size_t i : spread(middles, piece, 2 * search.spacing)) {
+    for (const std::size_t i : spread(middles, piece, 2 * search.spacing, search.pointsPerPiece)) {
       SignGrid::Corner next = found[i].corner;
       ++next[found[i].edge % 3];
       points.push_back(surfacePoint(f, grid.corner(found[i].corner), grid.corner(next), search.tolerance));
