@@ -7,6 +7,7 @@
 #include "comparing.hpp"
 #include "records.hpp"
 #include "results.hpp"
+#include "text_files.hpp"
 #include "voroform/core/output_file.hpp"
 #include "voroform/mesh/formats.hpp"
 
@@ -190,12 +191,6 @@ Json comparisonJson(const Form& form, const Comparison& comparison) {
   return json;
 }
 
-void writeText(const fs::path& path, const std::string& text) {
-  OutputFile file(path);
-  file.stream() << text;
-  file.commit();
-}
-
 // A row a sample, in world coordinates, all digits.
 void writePairs(const fs::path& path, const metrics::AccuracyPairs& pairs, const Frame& frame) {
   OutputFile file(path);
@@ -237,11 +232,10 @@ std::vector<std::string> writeComparison(const Form& form, const Comparison& com
   Json json = comparisonJson(form, comparison);
   // The tables hold times and so differ from run to run.
   json["sha256"] = filesJson(store.pathOf(""), store.names());
-  store.put("comparison.md", [&](const fs::path& path) { writeText(path, comparisonMarkdown(form, comparison)); });
-  store.put("comparison.csv", [&](const fs::path& path) { writeText(path, comparisonCsv(comparison.methods)); });
+  putText(store, "comparison.md", comparisonMarkdown(form, comparison));
+  putText(store, "comparison.csv", comparisonCsv(comparison.methods));
   if (comparison.options.equalTriangles) {
-    store.put("comparison-equal-triangles.csv",
-              [&](const fs::path& path) { writeText(path, comparisonCsv(comparison.equalTriangles)); });
+    putText(store, "comparison-equal-triangles.csv", comparisonCsv(comparison.equalTriangles));
   }
   store.put(kComparisonFile, [&](const fs::path& path) { writeJson(path, json); });
   context.throwIfCancelled();

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "comparing.hpp"
+#include "text_files.hpp"
 
 namespace voroform::pipeline {
 
@@ -314,14 +315,6 @@ std::vector<Column> csvColumns() {
                        return m.peakMemoryBytes > 0 ? std::to_string(m.peakMemoryBytes) : std::string();
                      }});
   return columns;
-}
-
-// RFC 4180.
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? "\"\"" : std::string(1, c);
-  return result + '"';
 }
 
 }  // namespace

@@ -1,11 +1,11 @@
 #include "rank_records.hpp"
+#include "text_files.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
 #include "voroform/core/error.hpp"
-#include "voroform/core/output_file.hpp"
 
 namespace voroform::pipeline {
 
@@ -139,13 +139,6 @@ Experiment experimentOf(const Json& json) {
   experiment.implicit = json.at("implicit").get<std::string>();
   experiment.rotate = json.at("rotate").get<bool>();
   return experiment;
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
 }
 
 std::string csvNumber(double value) {
@@ -296,16 +289,9 @@ std::string rankingsCsv(const Rankings& rankings) {
 
 std::vector<std::string> writeRankings(const Rankings& rankings, const std::filesystem::path& folder) {
   ArtifactStore store(folder);
-  const auto text = [&store](const char* name, const std::string& content) {
-    store.put(name, [&content](const std::filesystem::path& path) {
-      OutputFile file(path);
-      file.stream() << content;
-      file.commit();
-    });
-  };
-  text("rankings.csv", rankingsCsv(rankings));
-  text("rankings.md", rankingsMarkdown(rankings));
-  text("rankings.svg", rankingsSvg(rankings));
+  putText(store, "rankings.csv", rankingsCsv(rankings));
+  putText(store, "rankings.md", rankingsMarkdown(rankings));
+  putText(store, "rankings.svg", rankingsSvg(rankings));
   store.put("rankings.json", [&](const std::filesystem::path& path) { writeJson(path, rankingsJson(rankings)); });
   store.commit();
   return store.names();

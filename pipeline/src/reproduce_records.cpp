@@ -2,7 +2,7 @@
 #include <cmath>
 
 #include "rank_records.hpp"
-#include "voroform/core/output_file.hpp"
+#include "text_files.hpp"
 #include "voroform/pipeline/artifact_store.hpp"
 #include "voroform/pipeline/reproduce.hpp"
 
@@ -53,13 +53,6 @@ Json reproductionJson(const Reproduction& reproduction) {
           {"figures", std::move(figures)},
           {"remarks", reproduction.remarks},
           {"seconds", reproduction.seconds}};
-}
-
-std::string quoted(const std::string& text) {
-  if (text.find_first_of(",\"\n\r") == std::string::npos) return text;
-  std::string result = "\"";
-  for (const char c : text) result += c == '"' ? std::string("\"\"") : std::string(1, c);
-  return result + '"';
 }
 
 std::string csvNumber(double value) { return std::isfinite(value) ? shortNumber(value, 10) : std::string(); }
@@ -113,15 +106,8 @@ std::string reproductionMarkdown(const Reproduction& reproduction) {
 
 std::vector<std::string> writeReproduction(const Reproduction& reproduction, const std::filesystem::path& folder) {
   ArtifactStore store(folder);
-  const auto text = [&store](const char* name, const std::string& content) {
-    store.put(name, [&content](const std::filesystem::path& path) {
-      OutputFile file(path);
-      file.stream() << content;
-      file.commit();
-    });
-  };
-  text("reproduce.csv", reproductionCsv(reproduction));
-  text("reproduce.md", reproductionMarkdown(reproduction));
+  putText(store, "reproduce.csv", reproductionCsv(reproduction));
+  putText(store, "reproduce.md", reproductionMarkdown(reproduction));
   store.put("reproduce.json",
             [&](const std::filesystem::path& path) { writeJson(path, reproductionJson(reproduction)); });
   store.commit();
