@@ -12,9 +12,17 @@
 
 namespace voroform {
 
-using Vec3 = Eigen::Vector3d;
+// Points and boxes of M dimensions.
+template <int M>
+using Vec = Eigen::Matrix<double, M, 1>;
+template <int M>
+using Box = Eigen::AlignedBox<double, M>;
+
+using Vec2 = Vec<2>;
+using Vec3 = Vec<3>;
 using Mat3 = Eigen::Matrix3d;
-using Box3 = Eigen::AlignedBox3d;
+using Box2 = Box<2>;
+using Box3 = Box<3>;
 
 // Index of an element; -1 stands for "none" (for a cell: the exterior).
 using Index = std::int32_t;

@@ -12,6 +12,7 @@
 #include "voroform/implicit/surface_fit.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
 #include "voroform/voronoi/diagram.hpp"
+#include "voroform/voronoi/site_moments.hpp"
 
 namespace voroform::voronoi {
 
@@ -120,11 +121,6 @@ mesh::PolyhedralComplex toComplex(const Diagram& diagram, ClippedDiagram& clippe
 
 // Mass, first and second moment of each clipped cell about its site, loops closed by flat caps: all that the energy and
 // its gradient need.
-struct SiteMoments {
-  double mass = 0;            // ∫ dx
-  Vec3 first = Vec3::Zero();  // ∫ (x − site) dx
-  double second = 0;          // ∫ ‖x − site‖² dx
-};
 std::vector<SiteMoments> siteMoments(const Diagram& diagram, const ClippedDiagram& clipped, const RunContext& context);
 
 }  // namespace voroform::voronoi
