@@ -6,6 +6,7 @@
 #include <numeric>
 
 #include "rank_records.hpp"
+#include "voroform/core/xml_text.hpp"
 
 namespace voroform::pipeline {
 
@@ -24,27 +25,11 @@ constexpr std::size_t kPanelsPerRow = 4;
 constexpr std::array<const char*, 9> kColors = {"#00441b", "#1b7837", "#5aae61", "#a6dba0", "#d9f0d3",
                                                 "#fee0b6", "#fdb863", "#e08214", "#b35806"};
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;  // control characters are no XML
-    }
-  }
-  return result;
+// Control characters are no XML: each becomes a blank.
+std::string escaped(std::string text) {
+  std::replace_if(
+      text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
+  return xmlEscaped(text);
 }
 
 std::string coordinate(double value) {

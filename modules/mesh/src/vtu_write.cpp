@@ -6,6 +6,7 @@
 
 #include "voroform/core/error.hpp"
 #include "voroform/core/output_file.hpp"
+#include "voroform/core/xml_text.hpp"
 #include "voroform/mesh/formats.hpp"
 #include "vtu_layout.hpp"
 
@@ -40,29 +41,6 @@ class Buffer {
   std::vector<char> bytes_;
 };
 
-std::string escaped(const std::string& text) {
-  std::string result;
-  for (const char c : text) {
-    switch (c) {
-      case '&':
-        result += "&amp;";
-        break;
-      case '<':
-        result += "&lt;";
-        break;
-      case '>':
-        result += "&gt;";
-        break;
-      case '"':
-        result += "&quot;";
-        break;
-      default:
-        result += c;
-    }
-  }
-  return result;
-}
-
 // The XML part with the offsets of the blocks, and what writes each block's bytes.
 class Layout {
  public:
@@ -74,7 +52,7 @@ class Layout {
   // tuples < 0: the count follows from the number of points or cells (VTK wants it for field data only).
   void array(const std::string& type, const std::string& name, int components, std::int64_t tuples, std::uint64_t bytes,
              Emit emit) {
-    xml_ += "        <DataArray type=\"" + type + "\" Name=\"" + escaped(name) + "\"";
+    xml_ += "        <DataArray type=\"" + type + "\" Name=\"" + xmlEscaped(name) + "\"";
     if (components > 1) xml_ += " NumberOfComponents=\"" + std::to_string(components) + "\"";
     if (tuples >= 0) xml_ += " NumberOfTuples=\"" + std::to_string(tuples) + "\"";
     xml_ += " format=\"appended\" offset=\"" + std::to_string(offset_) + "\"/>\n";
