@@ -11,6 +11,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include "support/read_outcome.hpp"
 #include "voroform/core/random.hpp"
 #include "voroform/mesh/formats.hpp"
 #include "voroform/mesh/moments.hpp"
@@ -22,25 +23,12 @@ using ::testing::ElementsAre;
 using ::testing::HasSubstr;
 using ::testing::IsEmpty;
 
-struct Outcome {
-  MeshReadResult result;
-  std::string error;
-  std::vector<std::string> warnings;
-};
+using Outcome = test::ReadOutcome<MeshReadResult>;
 
 Outcome read(const std::string& bytes, const std::string& format) {
-  Outcome outcome;
-  RunContext context;
-  context.log = [&](LogLevel level, std::string_view message) {
-    if (level == LogLevel::warning) outcome.warnings.emplace_back(message);
-  };
-  std::istringstream stream(bytes);
-  try {
-    outcome.result = readSolidMesh(stream, format, "file", context);
-  } catch (const InputError& error) {
-    outcome.error = error.what();
-  }
-  return outcome;
+  return test::readOutcome<MeshReadResult>(bytes, [&](std::istream& stream, const RunContext& context) {
+    return readSolidMesh(stream, format, "file", context);
+  });
 }
 
 using Faces = std::vector<std::vector<int>>;

@@ -5,12 +5,10 @@
 #include <bit>
 #include <cstring>
 #include <initializer_list>
-#include <sstream>
 #include <string>
 #include <string_view>
-#include <vector>
 
-#include "voroform/core/error.hpp"
+#include "support/read_outcome.hpp"
 #include "voroform/points/read.hpp"
 
 namespace voroform::points::test {
@@ -40,26 +38,13 @@ class Bytes {
   std::endian order_;
 };
 
-struct Outcome {
-  ReadResult result;
-  std::string error;  // the InputError's message; empty if there was none
-  std::vector<std::string> warnings;
-};
+using Outcome = voroform::test::ReadOutcome<ReadResult>;
 
 // Reads the bytes under the name "file".
 inline Outcome readBytes(const std::string& bytes, const std::string& format) {
-  Outcome outcome;
-  RunContext context;
-  context.log = [&](LogLevel level, std::string_view message) {
-    if (level == LogLevel::warning) outcome.warnings.emplace_back(message);
-  };
-  std::istringstream stream(bytes);
-  try {
-    outcome.result = readPoints(stream, format, "file", context);
-  } catch (const InputError& error) {
-    outcome.error = error.what();
-  }
-  return outcome;
+  return voroform::test::readOutcome<ReadResult>(bytes, [&](std::istream& stream, const RunContext& context) {
+    return readPoints(stream, format, "file", context);
+  });
 }
 
 }  // namespace voroform::points::test
