@@ -1,7 +1,5 @@
 #include "voroform/pipeline/form.hpp"
 
-#include <algorithm>
-#include <cctype>
 #include <fstream>
 #include <string_view>
 #include <system_error>
@@ -26,13 +24,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::string_view kShapePrefix = "shape:";
-
-std::string lowerExtension(const fs::path& path) {
-  std::string extension = path.extension().string();
-  std::transform(extension.begin(), extension.end(), extension.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  return extension;
-}
 
 Box3 grown(const Box3& box, double margin) {
   const Vec3 border = Vec3::Constant(margin * box.diagonal().norm());
@@ -213,7 +204,7 @@ Form formFromFile(const fs::path& path, const RunContext& context) {
   const Stopwatch watch;
   Form form;
   form.source = path;
-  const bool isMesh = lowerExtension(path) == ".ply";
+  const bool isMesh = lowerCaseExtension(path) == ".ply";
   const char* const companions = isMesh ? "its record (.json)" : "its record (.json) and its cloud (points.ply)";
   requireCompanion(path, fs::path(path).replace_extension(".json"), companions);
   if (!isMesh) requireCompanion(path, path.parent_path() / kFormPointsFile, companions);
@@ -229,7 +220,7 @@ Form formFromFile(const fs::path& path, const RunContext& context) {
 }
 
 bool isStoredMeshForm(const fs::path& path) {
-  if (lowerExtension(path) != ".ply") return false;
+  if (lowerCaseExtension(path) != ".ply") return false;
   const fs::path recordPath = fs::path(path).replace_extension(".json");
   std::error_code error;
   if (!fs::is_regular_file(recordPath, error)) return false;
@@ -264,7 +255,7 @@ Form formFromInput(const std::string& input, const FormOptions& options, const R
     requireNoFormOptions(input, options, true);
     return formFromShape(input.substr(kShapePrefix.size()), options.rotationSeed);
   }
-  if (lowerExtension(input) == ".vtu" || isStoredMeshForm(input)) {
+  if (lowerCaseExtension(input) == ".vtu" || isStoredMeshForm(input)) {
     requireNoFormOptions(input, options, false);
     return formFromFile(input, context);
   }

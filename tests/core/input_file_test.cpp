@@ -65,6 +65,13 @@ TEST_F(InputFile, PipesAndDevicesAreNone) {
   EXPECT_THAT(complaint("/dev/zero"), testing::HasSubstr("expected a regular file"));
 }
 
+TEST_F(InputFile, ExtensionsAreToldWhateverTheirCase) {
+  EXPECT_EQ(lowerCaseExtension("Folder.A/Scan.PlY"), ".ply");
+  EXPECT_EQ(lowerCaseExtension("a.tar.GZ"), ".gz");
+  EXPECT_EQ(lowerCaseExtension("Folder.A/scan"), "");
+  EXPECT_EQ(lowerCaseExtension("a.Ä"), ".Ä");
+}
+
 TEST_F(InputFile, ThatMayNotBeRead) {
   if (::geteuid() == 0) GTEST_SKIP() << "root may read everything";
   std::ofstream(folder_ / "secret") << "x";

@@ -112,4 +112,8 @@ void ByteSource::failTruncated(std::uint64_t declared, std::string_view things, 
        std::to_string(complete) + " (byte " + std::to_string(bytesRead_) + ")");
 }
 
+void warnOfExtraData(ByteSource& source) {
+  if (!source.atEnd()) source.context().warn(source.name() + ": ignored data behind the declared records");
+}
+
 }  // namespace voroform

@@ -102,4 +102,14 @@ void LineScanner::expectEnd(std::string_view what) {
   if (!atEnd()) source_->failAtLine("the end of the line after " + std::string(what), quotedToken(word()));
 }
 
+void warnOfExtraLines(ByteSource& source) {
+  std::string_view line;
+  while (source.nextLine(line)) {
+    if (LineScanner(source, line).atEnd()) continue;
+    source.context().warn(source.name() + ":" + std::to_string(source.line()) +
+                          ": ignored lines behind the declared records");
+    return;
+  }
+}
+
 }  // namespace voroform

@@ -42,6 +42,13 @@ bool nextOffLine(ByteSource& source, std::string_view& line) {
   return false;
 }
 
+void warnOfExtraOffLines(ByteSource& source) {
+  std::string_view line;
+  if (!nextOffLine(source, line)) return;
+  source.context().warn(source.name() + ":" + std::to_string(source.line()) +
+                        ": ignored lines behind the declared records");
+}
+
 OffHeader readOffHeader(ByteSource& source) {
   std::string_view line;
   if (!nextOffLine(source, line)) source.fail(source.line() == 0 ? "the file is empty" : "the file holds no header");

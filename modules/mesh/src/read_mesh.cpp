@@ -14,14 +14,6 @@ namespace voroform::mesh {
 
 namespace {
 
-std::string lowerCaseExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
-}
-
 bool isKnown(const std::string& format) {
   return format == ".off" || format == ".obj" || format == ".ply" || format == ".stl";
 }

@@ -26,16 +26,6 @@ Vec3 readPosition(LineScanner& scanner) {
   return position;
 }
 
-void warnOfExtraLines(ByteSource& source) {
-  std::string_view line;
-  while (source.nextLine(line)) {
-    if (LineScanner(source, line).atEnd()) continue;
-    source.context().warn(source.name() + ":" + std::to_string(source.line()) +
-                          ": ignored lines behind the declared records");
-    return;
-  }
-}
-
 void requireCorners(std::size_t corners, const ByteSource& source) {
   if (corners < 3) source.failAtLine("a face of at least 3 corners", std::to_string(corners));
 }
@@ -94,10 +84,7 @@ RawMesh readOffMesh(ByteSource& source) {
     requireCorners(corners.size(), source);
     builder.addFace(corners);  // a color may follow
   }
-  if (nextOffLine(source, line)) {
-    source.context().warn(source.name() + ":" + std::to_string(source.line()) +
-                          ": ignored lines behind the declared records");
-  }
+  warnOfExtraOffLines(source);
   return raw;
 }
 
@@ -301,8 +288,8 @@ RawMesh readPlyMesh(ByteSource& source) {
   }
   if (header.encoding == PlyEncoding::ascii) {
     warnOfExtraLines(source);
-  } else if (!source.atEnd()) {
-    source.context().warn(source.name() + ": ignored data behind the declared records");
+  } else {
+    warnOfExtraData(source);
   }
   return raw;
 }
@@ -375,7 +362,7 @@ void readBinaryStl(ByteSource& source, RawMesh& raw) {
     }
     builder.addFace(triangle);
   }
-  if (!source.atEnd()) source.context().warn(source.name() + ": ignored data behind the declared records");
+  warnOfExtraData(source);
 }
 
 bool isWord(std::string_view word, std::string_view expected) {

@@ -44,10 +44,7 @@ ReadResult readOff(ByteSource& source) {
     builder.add(values);
   }
   readFaces(source, result.summary.faces, vertices);
-  if (mesh::nextOffLine(source, line)) {
-    source.context().warn(source.name() + ":" + std::to_string(source.line()) +
-                          ": ignored lines behind the declared records");
-  }
+  mesh::warnOfExtraOffLines(source);
   result.summary.format = "OFF";
   result.summary.records = builder.size();
   result.summary.normals = header.normals;

@@ -10,14 +10,6 @@
 namespace voroform::points {
 namespace {
 
-std::string lowerCaseExtension(const std::filesystem::path& path) {
-  std::string extension = path.extension().string();
-  for (char& c : extension) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
-  return extension;
-}
-
 using Reader = ReadResult (*)(ByteSource&);
 
 Reader readerOf(const std::string& format, const std::string& name) {

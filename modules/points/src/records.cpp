@@ -2,7 +2,6 @@
 
 #include <limits>
 
-#include "voroform/core/text_scanner.hpp"
 #include "voroform/core/types.hpp"
 
 namespace voroform::points {
@@ -55,20 +54,6 @@ void readFixedRecords(ByteSource& source, std::uint64_t declared, std::size_t st
       values[i] = decodeScalar(bytes + fields[i].offset, fields[i].type, swapped);
     }
     builder.add(values);
-  }
-}
-
-void warnOfExtraData(ByteSource& source) {
-  if (!source.atEnd()) source.context().warn(source.name() + ": ignored data behind the declared records");
-}
-
-void warnOfExtraLines(ByteSource& source) {
-  std::string_view line;
-  while (source.nextLine(line)) {
-    if (LineScanner(source, line).atEnd()) continue;
-    source.context().warn(source.name() + ":" + std::to_string(source.line()) +
-                          ": ignored lines behind the declared records");
-    return;
   }
 }
 

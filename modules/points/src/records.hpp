@@ -58,9 +58,4 @@ struct RecordField {
 void readFixedRecords(ByteSource& source, std::uint64_t declared, std::size_t stride,
                       const std::array<RecordField, 6>& fields, bool normals, bool swapped, CloudBuilder& builder);
 
-// Says through the context that a file goes on behind what its header declares.
-void warnOfExtraData(ByteSource& source);
-// The same for text, where blank lines may follow.
-void warnOfExtraLines(ByteSource& source);
-
 }  // namespace voroform::points

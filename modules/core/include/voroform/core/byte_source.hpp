@@ -59,4 +59,7 @@ class ByteSource {
   std::uint64_t line_ = 0;
 };
 
+// Says through the context that a file goes on behind what its header declares.
+void warnOfExtraData(ByteSource& source);
+
 }  // namespace voroform

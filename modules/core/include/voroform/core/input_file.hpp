@@ -3,6 +3,7 @@
 
 #include <filesystem>
 #include <fstream>
+#include <string>
 
 namespace voroform {
 
@@ -12,5 +13,8 @@ void requireRegularFile(const std::filesystem::path& path);
 
 // Opens a regular file to read it as bytes. Throws InputError with the path and the system's reason.
 std::ifstream openInputFile(const std::filesystem::path& path);
+
+// The extension with its dot, by which formats are chosen; the letters A to Z made small whatever the locale.
+std::string lowerCaseExtension(const std::filesystem::path& path);
 
 }  // namespace voroform

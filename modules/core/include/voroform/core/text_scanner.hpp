@@ -42,4 +42,7 @@ class LineScanner {
   const char* end_;
 };
 
+// Says through the context that more than blank lines follow behind what a file's header declares, and where.
+void warnOfExtraLines(ByteSource& source);
+
 }  // namespace voroform

@@ -21,4 +21,7 @@ OffHeader readOffHeader(ByteSource& source);
 // The next line that holds more than blanks and a comment; false at the end of the file.
 bool nextOffLine(ByteSource& source, std::string_view& line);
 
+// Says through the context that there is such a line behind what the header declares, and where.
+void warnOfExtraOffLines(ByteSource& source);
+
 }  // namespace voroform::mesh
