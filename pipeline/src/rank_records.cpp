@@ -1,10 +1,10 @@
 #include "rank_records.hpp"
-#include "text_files.hpp"
 
 #include <cmath>
 #include <cstdio>
 #include <limits>
 
+#include "text_files.hpp"
 #include "voroform/core/error.hpp"
 
 namespace voroform::pipeline {
