@@ -9,7 +9,7 @@
 #include "report.hpp"
 #include "surface_distance.hpp"
 #include "voroform/cvt/energy.hpp"
-#include "voroform/cvt/sites.hpp"
+#include "voroform/cvt/initial_sites.hpp"
 #include "voroform/cvt/tessellate.hpp"
 #include "voroform/implicit/shapes.hpp"
 #include "voroform/mesh/moments.hpp"

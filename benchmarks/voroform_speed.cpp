@@ -13,7 +13,8 @@
 #include "scan_form.hpp"
 #include "voroform/core/random.hpp"
 #include "voroform/cvt/energy.hpp"
-#include "voroform/cvt/sites.hpp"
+#include "voroform/cvt/implicit_domain.hpp"
+#include "voroform/cvt/initial_sites.hpp"
 #include "voroform/cvt/tessellate.hpp"
 
 namespace {
@@ -37,7 +38,7 @@ double delaunaySeconds(const std::vector<Vec3>& sites) {
 
 // Sites as they stand within an optimization.
 std::vector<Vec3> relaxedSites(const implicit::ImplicitFunction& f, Index count, const RunContext& context) {
-  std::vector<Vec3> sites = cvt::randomSites(f, count, 1, context);
+  std::vector<Vec3> sites = cvt::randomSites(cvt::ImplicitDomain(f), count, 1, context);
   const cvt::Evaluation state = cvt::evaluateEnergy(sites, f, {}, context);
   for (std::size_t i = 0; i < sites.size(); ++i) {
     if (state.moments[i].mass > 0) sites[i] += state.moments[i].first / state.moments[i].mass;
@@ -130,7 +131,7 @@ void measureMemory() {
   RunContext context;
   context.threads = 2;
   const implicit::ImplicitPtr torus = implicit::torus(1, 0.4);
-  const std::vector<Vec3> sites = cvt::randomSites(*torus, kSites, 1, context);
+  const std::vector<Vec3> sites = cvt::randomSites(cvt::ImplicitDomain(*torus), kSites, 1, context);
   voronoi::ClipOptions options;
   options.rootTolerance = cvt::kOptimizationRootTolerance;
   cvt::evaluateEnergy(sites, *torus, options, context);

@@ -22,11 +22,11 @@ constexpr voronoi::ClipOptions kExact = {.rootTolerance = 1e-13};
 TEST(OptimalEnergy, IsThatOfTruncatedOctahedra) {
   // ∫‖x − center‖² dx of one truncated octahedron is 3·G₃·V^(5/3), by the definition of G₃.
   const double regularity = 19 / (192 * std::cbrt(2.0));
-  EXPECT_NEAR(optimalEnergy(1, 1), 3 * regularity, 1e-15);
-  EXPECT_NEAR(optimalEnergy(1000, 8), 1000 * 3 * regularity * std::pow(8.0 / 1000, 5.0 / 3), 1e-15);
+  EXPECT_NEAR(optimalEnergy<3>(1, 1), 3 * regularity, 1e-15);
+  EXPECT_NEAR(optimalEnergy<3>(1000, 8), 1000 * 3 * regularity * std::pow(8.0 / 1000, 5.0 / 3), 1e-15);
   // Units⁵, and n^(−2/3) for one volume.
-  EXPECT_NEAR(optimalEnergy(50, 3 * 8), 32 * optimalEnergy(50, 3), 1e-12);
-  EXPECT_NEAR(optimalEnergy(8 * 50, 3), optimalEnergy(50, 3) / 4, 1e-13);
+  EXPECT_NEAR(optimalEnergy<3>(50, 3 * 8), 32 * optimalEnergy<3>(50, 3), 1e-12);
+  EXPECT_NEAR(optimalEnergy<3>(8 * 50, 3), optimalEnergy<3>(50, 3) / 4, 1e-13);
 }
 
 TEST(Energy, OfALatticeIsThatOfItsCubes) {

@@ -1,4 +1,5 @@
-#include "voroform/cvt/sites.hpp"
+#include "voroform/cvt/initial_sites.hpp"
+#include "voroform/cvt/implicit_domain.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -17,7 +18,7 @@ TEST(RandomSites, LieInsideInTheNumberAskedFor) {
   for (const std::string& name : implicit::shapeNames()) {
     const auto form = implicit::namedShape(name);
     for (const Index count : {1, 7, 5000}) {
-      const auto sites = randomSites(*form, count, 1, {});
+      const auto sites = randomSites(ImplicitDomain(*form), count, 1, {});
       ASSERT_EQ(sites.size(), static_cast<std::size_t>(count)) << name;
       for (const Vec3& site : sites) EXPECT_LT(form->value(site), 0) << name;
     }
@@ -29,7 +30,7 @@ TEST(RandomSites, FillABallEvenly) {
   constexpr int kCount = 16000;
   // Eight octants times two shells of equal volume: 16 bins.
   std::array<int, 16> bins{};
-  for (const Vec3& site : randomSites(*ball, kCount, 2, {})) {
+  for (const Vec3& site : randomSites(ImplicitDomain(*ball), kCount, 2, {})) {
     const int octant = (site.x() > 0 ? 1 : 0) + (site.y() > 0 ? 2 : 0) + (site.z() > 0 ? 4 : 0);
     ++bins[static_cast<std::size_t>(octant + (site.norm() > std::cbrt(0.5) ? 8 : 0))];
   }
@@ -45,23 +46,24 @@ TEST(RandomSites, DependOnTheSeedAlone) {
   const auto form = implicit::torus(1, 0.4);
   RunContext one;
   one.threads = 1;
-  const auto reference = randomSites(*form, 20000, 3, one);
+  const auto reference = randomSites(ImplicitDomain(*form), 20000, 3, one);
   for (const int threads : {2, 3}) {
     RunContext several;
     several.threads = threads;
-    EXPECT_TRUE(testing::sameBits(reference, randomSites(*form, 20000, 3, several)));
+    EXPECT_TRUE(testing::sameBits(reference, randomSites(ImplicitDomain(*form), 20000, 3, several)));
   }
-  EXPECT_FALSE(testing::sameBits(reference, randomSites(*form, 20000, 4, one)));
+  EXPECT_FALSE(testing::sameBits(reference, randomSites(ImplicitDomain(*form), 20000, 4, one)));
 }
 
 TEST(RandomSites, TheOracleChangesNone) {
   const auto form = implicit::torus(1, 0.4);
   const testing::WithoutOracle idle(form);
-  EXPECT_TRUE(testing::sameBits(randomSites(*form, 3000, 5, {}), randomSites(idle, 3000, 5, {})));
+  EXPECT_TRUE(testing::sameBits(randomSites(ImplicitDomain(*form), 3000, 5, {}),
+                                randomSites(ImplicitDomain(idle), 3000, 5, {})));
 }
 
 TEST(RandomSites, ComeInSpatialOrder) {
-  const auto sites = randomSites(*implicit::sphere(1), 4000, 6, {});
+  const auto sites = randomSites(ImplicitDomain(*implicit::sphere(1)), 4000, 6, {});
   double path = 0;
   for (std::size_t i = 1; i < sites.size(); ++i) path += (sites[i] - sites[i - 1]).norm();
   // Their spacing is 0.1; two random points of the unit ball lie 36/35 apart on average.
@@ -71,15 +73,15 @@ TEST(RandomSites, ComeInSpatialOrder) {
 TEST(RandomSites, RejectAFormWithoutAnInside) {
   // The bounds are those of the first shape; what is left of it is nothing, or next to nothing.
   const auto nothing = implicit::differenceOf(implicit::sphere(1), implicit::sphere(2));
-  EXPECT_THROW(randomSites(*nothing, 10, 1, {}), MethodError);
+  EXPECT_THROW(randomSites(ImplicitDomain(*nothing), 10, 1, {}), MethodError);
   try {
-    randomSites(*nothing, 10, 1, {});
+    randomSites(ImplicitDomain(*nothing), 10, 1, {});
   } catch (const MethodError& error) {
     EXPECT_THAT(error.what(), ::testing::HasSubstr("10 sites"));
     EXPECT_THAT(error.what(), ::testing::HasSubstr("empty or too thin"));
   }
   const auto shell = implicit::differenceOf(implicit::sphere(1), implicit::sphere(1 - 1e-7));
-  EXPECT_THROW(randomSites(*shell, 10, 1, {}), MethodError);
+  EXPECT_THROW(randomSites(ImplicitDomain(*shell), 10, 1, {}), MethodError);
 }
 
 }  // namespace

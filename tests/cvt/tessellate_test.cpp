@@ -1,4 +1,5 @@
 #include "voroform/cvt/tessellate.hpp"
+#include "voroform/cvt/implicit_domain.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -12,7 +13,7 @@
 #include "support/voronoi_sites.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/cvt/energy.hpp"
-#include "voroform/cvt/sites.hpp"
+#include "voroform/cvt/initial_sites.hpp"
 #include "voroform/implicit/shapes.hpp"
 #include "voroform/mesh/moments.hpp"
 #include "voroform/mesh/validate.hpp"
@@ -121,7 +122,7 @@ TEST(Tessellate, NoIterationsClipTheInitialSites) {
   ASSERT_THAT(result.summary.iterations, SizeIs(1));
   EXPECT_EQ(result.summary.stop, StopReason::iterations);
   EXPECT_EQ(result.summary.reseededSites, 0);
-  EXPECT_TRUE(testing::sameBits(result.complex.cellSites, randomSites(*form, 800, 5, {})));
+  EXPECT_TRUE(testing::sameBits(result.complex.cellSites, randomSites(ImplicitDomain(*form), 800, 5, {})));
 }
 
 TEST(Tessellate, StopsAtARelativeError) {

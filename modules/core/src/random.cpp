@@ -17,7 +17,10 @@ std::uint64_t mix(std::uint64_t x) {
 // x·2⁻⁵³ for the upper 53 bits.
 double toUnit(std::uint64_t bits) { return static_cast<double>(bits >> 11U) * 0x1.0p-53; }
 
-Vec3 placeInBox(const Vec3& unit, const Box3& box) { return box.min() + unit.cwiseProduct(box.sizes()); }
+template <int M>
+Vec<M> placeInBox(const Vec<M>& unit, const Box<M>& box) {
+  return box.min() + unit.cwiseProduct(box.sizes());
+}
 
 }  // namespace
 
@@ -29,10 +32,14 @@ double randomUnit(std::uint64_t seed, RandomStream stream, std::uint64_t index) 
   return toUnit(randomBits(seed, stream, index));
 }
 
+Vec2 randomInBox(std::uint64_t seed, RandomStream stream, std::uint64_t index, const Box2& box) {
+  return placeInBox<2>({randomUnit(seed, stream, 2 * index), randomUnit(seed, stream, 2 * index + 1)}, box);
+}
+
 Vec3 randomInBox(std::uint64_t seed, RandomStream stream, std::uint64_t index, const Box3& box) {
   const Vec3 unit(randomUnit(seed, stream, 3 * index), randomUnit(seed, stream, 3 * index + 1),
                   randomUnit(seed, stream, 3 * index + 2));
-  return placeInBox(unit, box);
+  return placeInBox<3>(unit, box);
 }
 
 Vec3 quasiRandomInBox(std::uint64_t seed, std::uint64_t index, const Box3& box) {
@@ -42,7 +49,7 @@ Vec3 quasiRandomInBox(std::uint64_t seed, std::uint64_t index, const Box3& box) 
   for (std::uint64_t axis = 0; axis < 3; ++axis) {
     unit[static_cast<Index>(axis)] = toUnit(randomBits(seed, RandomStream::volume, axis) + (index + 1) * kSteps[axis]);
   }
-  return placeInBox(unit, box);
+  return placeInBox<3>(unit, box);
 }
 
 Mat3 randomRotation(std::uint64_t seed) {

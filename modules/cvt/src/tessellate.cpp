@@ -3,11 +3,11 @@
 #include <algorithm>
 #include <string>
 
-#include "optimize.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/memory.hpp"
 #include "voroform/cvt/energy.hpp"
-#include "voroform/cvt/sites.hpp"
+#include "voroform/cvt/implicit_domain.hpp"
+#include "voroform/cvt/initial_sites.hpp"
 #include "voroform/voronoi/diagram.hpp"
 
 namespace voroform::cvt {
@@ -25,34 +25,14 @@ void throwIfInvalid(const TessellateOptions& options) {
 
 }  // namespace
 
-const char* toString(StopReason reason) {
-  switch (reason) {
-    case StopReason::iterations:
-      return "iterations";
-    case StopReason::converged:
-      return "converged";
-    case StopReason::relativeError:
-      return "relative-error";
-    case StopReason::stalled:
-      return "stalled";
-  }
-  return "";
-}
-
 std::vector<std::string> validate(const TessellateOptions& options) {
   std::vector<std::string> violations;
-  const auto require = [&](bool holds, const std::string& sentence) {
-    if (!holds) violations.push_back(sentence);
-  };
-  require(options.sites >= 1 && options.sites <= kMostSites,
-          "sites is " + std::to_string(options.sites) + ", but must be from 1 to " + std::to_string(kMostSites));
-  require(options.iterations >= 0, "iterations is " + std::to_string(options.iterations) + ", but must be at least 0");
-  require(options.convergence >= 0,
-          "convergence is " + std::to_string(options.convergence) + ", but must be at least 0");
-  require(options.relativeError >= 0,
-          "relative-error is " + std::to_string(options.relativeError) + ", but must be at least 0");
-  require(options.reseedRounds >= 0,
-          "reseedRounds is " + std::to_string(options.reseedRounds) + ", but must be at least 0");
+  if (options.sites < 1 || options.sites > kMostSites) {
+    violations.push_back("sites is " + std::to_string(options.sites) + ", but must be from 1 to " +
+                         std::to_string(kMostSites));
+  }
+  const std::vector<std::string> others = validate(static_cast<const OptimizeOptions&>(options));
+  violations.insert(violations.end(), others.begin(), others.end());
   return violations;
 }
 
@@ -72,11 +52,12 @@ OptimizedSites optimizeSites(const implicit::ImplicitFunction& f, const Tessella
   requireMemory(options);
   OptimizedSites result;
   Stopwatch watch;
-  result.sites = randomSites(f, options.sites, options.seed, context);
+  const ImplicitDomain domain(f, options.rootFinder, options.seed);
+  result.sites = randomSites(domain, options.sites, options.seed, context);
   result.summary.secondsInitial = watch.seconds();
 
   watch.restart();
-  minimizeEnergy(result.sites, f, options, result.summary, context);
+  static_cast<OptimizeSummary&>(result.summary) = optimize(domain, result.sites, options, context);
   result.summary.secondsOptimization = watch.seconds();
   return result;
 }

@@ -30,6 +30,7 @@ std::uint64_t randomBits(std::uint64_t seed, RandomStream stream, std::uint64_t 
 double randomUnit(std::uint64_t seed, RandomStream stream, std::uint64_t index);
 
 // Uniform in the box.
+Vec2 randomInBox(std::uint64_t seed, RandomStream stream, std::uint64_t index, const Box2& box);
 Vec3 randomInBox(std::uint64_t seed, RandomStream stream, std::uint64_t index, const Box3& box);
 
 // The index-th point of the additive R3 sequence in the box (M. Roberts 2018), shifted by the seed: quasi-random,

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "voroform/core/run_context.hpp"
+#include "voroform/cvt/optimize.hpp"
 #include "voroform/implicit/implicit_function.hpp"
 #include "voroform/implicit/roots.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
@@ -13,58 +14,23 @@
 
 namespace voroform::cvt {
 
-enum class Optimizer { lbfgs, lloyd };
-
-enum class StopReason {
-  iterations,     // the number of iterations asked for was done
-  converged,      // rms‖cᵢ − xᵢ‖/h fell below the tolerance
-  relativeError,  // (E − E_m)/E_m fell below the one asked for (thesis, Algorithm 1)
-  stalled,        // the line search found no lower energy (implicit domains: the gradient lacks a small cap term)
-};
-const char* toString(StopReason reason);
-
-struct TessellateOptions {
+struct TessellateOptions : OptimizeOptions {
   // Number of sites, at least 1.
   Index sites = 1000;
-  // Iterations of the optimizer, at least 0; 0 clips the initial sites.
-  int iterations = 10;
-  Optimizer optimizer = Optimizer::lbfgs;
   // Caps of the result. The optimization itself always uses CapKind::flat, the cheapest.
   voronoi::CapKind cap = voronoi::CapKind::cvt3;
   // Fit the boundary to S in the mean square (voronoi::ClipOptions::fit): with the caps of cvt3 that is cvt4.
   bool fit = false;
   implicit::RootFinder rootFinder = implicit::RootFinder::itp;
-  // Stop when rms‖cᵢ − xᵢ‖/h is at most this; 0 never stops for it.
-  double convergence = 5e-4;
-  // Stop when (E − E_m)/E_m is at most this; 0 never stops for it.
-  double relativeError = 0;
-  // How often sites without a cell may be moved into the largest cells.
-  int reseedRounds = 3;
   // Memory the run may take, in bytes; a larger estimate throws EnvironmentError before anything is allocated. 0:
   // usableMemory().
   std::uint64_t memoryLimit = 0;
-  std::uint64_t seed = 0;
 };
 // Every violation of the options, as sentences naming field, value and rule; empty if there is none.
 std::vector<std::string> validate(const TessellateOptions& options);
 
-struct IterationRecord {
-  double energy = 0;    // E, in units⁵
-  double rmsMove = 0;   // rms‖cᵢ − xᵢ‖/h
-  int evaluations = 0;  // of the energy, in all so far
-};
-
-struct TessellateSummary {
-  StopReason stop = StopReason::iterations;
-  std::vector<IterationRecord> iterations;  // the first for the initial sites; one more for each restart
-  int iterationsDone = 0;                   // without the states that restarts began with
-  int restarts = 0;                         // of L-BFGS, after sites were moved out of empty cells
-  double energy = 0;                        // of the returned tessellation's sites, with flat caps
-  double optimalEnergy = 0;                 // E_3 = 3·n·(V/n)^(5/3)·G₃
-  double relativeError = 0;                 // (energy − optimalEnergy)/optimalEnergy
-  int evaluations = 0;
-  Index reseededSites = 0;
-  Index emptySites = 0;  // sites without a cell at the end: dropped
+struct TessellateSummary : OptimizeSummary {  // its energies are of flat caps
+  Index emptySites = 0;                       // sites without a cell at the end: dropped
   voronoi::ClipSummary clip;
   double secondsInitial = 0;
   double secondsOptimization = 0;

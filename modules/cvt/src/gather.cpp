@@ -1,0 +1,109 @@
+#include "gather.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "voroform/core/parallel.hpp"
+
+namespace voroform::cvt {
+
+namespace {
+
+constexpr std::size_t kGrain = 4096;
+// A cell with less than this share of the mean mass is as good as empty: its centroid is lost in rounding, or it is
+// what flat caps leave of a part thinner than they can follow.
+constexpr double kEmptyShare = 1e-6;
+
+struct Sums {
+  double energy = 0;
+  double volume = 0;
+  double squaredMoves = 0;
+  double squaredGradient = 0;
+  double squaredSites = 0;
+  double regularity = 0;
+  Index empty = 0;
+};
+
+Sums operator+(const Sums& a, const Sums& b) {
+  return {a.energy + b.energy,
+          a.volume + b.volume,
+          a.squaredMoves + b.squaredMoves,
+          a.squaredGradient + b.squaredGradient,
+          a.squaredSites + b.squaredSites,
+          a.regularity + b.regularity,
+          a.empty + b.empty};
+}
+
+// x^(1/M).
+template <int M>
+double root(double x) {
+  return M == 2 ? std::sqrt(x) : std::cbrt(x);
+}
+
+// The dimensionless second moment G of a cell about its centroid (thesis, equation 3.4).
+template <int M>
+double regularity(const voronoi::Moments<M>& cell) {
+  const double size = root<M>(cell.mass);
+  return (cell.second - cell.first.squaredNorm() / cell.mass) / (M * cell.mass * size * size);
+}
+
+}  // namespace
+
+template <int M>
+void gather(std::span<const Vec<M>> sites, Evaluation<M>& evaluation, const RunContext& context) {
+  std::vector<voronoi::Moments<M>>& moments = evaluation.moments;
+  double volume = 0;
+  for (const auto& cell : moments) volume += std::max(0.0, cell.mass);
+  const auto n = static_cast<double>(sites.size());
+  const double least = kEmptyShare * volume / n;
+  const Sums sums = parallelReduce(
+      context, sites.size(), kGrain, Sums{},
+      [&](std::size_t begin, std::size_t end, Sums sum) {
+        for (std::size_t i = begin; i < end; ++i) {
+          voronoi::Moments<M>& cell = moments[i];
+          sum.squaredSites += sites[i].squaredNorm();
+          if (!(cell.mass > least)) {
+            cell = {};
+            ++sum.empty;
+            continue;
+          }
+          sum.energy += cell.second;
+          sum.volume += cell.mass;
+          sum.squaredMoves += cell.first.squaredNorm() / (cell.mass * cell.mass);
+          sum.squaredGradient += 4 * cell.first.squaredNorm();
+          sum.regularity += regularity(cell);
+        }
+        return sum;
+      },
+      [](const Sums& a, const Sums& b) { return a + b; });
+  evaluation.energy = sums.energy;
+  evaluation.volume = sums.volume;
+  evaluation.emptyCells = sums.empty;
+  const double filled = n - static_cast<double>(sums.empty);
+  if (filled > 0) {
+    evaluation.rmsMove = std::sqrt(sums.squaredMoves / filled) / root<M>(sums.volume / n);
+    evaluation.meanRegularity = sums.regularity / filled;
+  }
+  if (sums.squaredSites > 0) evaluation.relativeGradient = std::sqrt(sums.squaredGradient / sums.squaredSites);
+}
+
+template <int M>
+double optimalRegularity() {
+  return M == 2 ? 5 / (36 * std::sqrt(3.0)) : 19 / (192 * std::cbrt(2.0));
+}
+
+template <int M>
+double optimalEnergy(Index sites, double volume) {
+  const double cell = volume / static_cast<double>(sites);
+  const double size = root<M>(cell);
+  return M * static_cast<double>(sites) * cell * (size * size) * optimalRegularity<M>();
+}
+
+template void gather<2>(std::span<const Vec2>, Evaluation<2>&, const RunContext&);
+template void gather<3>(std::span<const Vec3>, Evaluation<3>&, const RunContext&);
+template double optimalRegularity<2>();
+template double optimalRegularity<3>();
+template double optimalEnergy<2>(Index, double);
+template double optimalEnergy<3>(Index, double);
+
+}  // namespace voroform::cvt
