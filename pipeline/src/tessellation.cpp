@@ -47,9 +47,10 @@ void warnOfLosses(const Measurement& measurement, const RunContext& context) {
 void warnOfClipping(const cvt::TessellateSummary& summary, const RunContext& context) {
   const voronoi::ClipSummary& clip = summary.clip;
   if (summary.emptySites > 0) {
-    context.warn(std::to_string(summary.emptySites) +
-                 " sites ended without a cell and were dropped: some parts of "
-                 "the solid are thinner than the cell size; more sites help");
+    context.warn(
+        std::to_string(summary.emptySites) +
+        (summary.emptySites == 1 ? " site ended without a cell and was" : " sites ended without a cell and were") +
+        " dropped: some parts of the solid are thinner than the cell size; more sites help");
   }
   if (share(clip.multiLoopCells, clip.boundaryCells) > kMultiLoopShareWarning) {
     context.warn(std::to_string(clip.multiLoopCells) + " of " + std::to_string(clip.boundaryCells) +
