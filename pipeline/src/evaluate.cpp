@@ -27,12 +27,7 @@ Json& member(Json& json, const char* key, const fs::path& path) {
 
 template <class T>
 T value(Json& json, const char* key, const fs::path& path) {
-  Json& found = member(json, key, path);
-  try {
-    return found.get<T>();
-  } catch (const Json::exception&) {
-    throw InputError(path.string() + ": the key \"" + key + "\" has a wrong type: " + found.dump());
-  }
+  return valueAs<T>(member(json, key, path), key, path.string());
 }
 
 Form formOfResults(const fs::path& folder, Json& json, const fs::path& metricsPath, const RunContext& context) {

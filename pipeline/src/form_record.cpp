@@ -62,11 +62,7 @@ class Reader {
 
   template <class T>
   T get(const char* key) const {
-    try {
-      return at(key).get<T>();
-    } catch (const Json::exception&) {
-      throw InputError(name_ + ": the key \"" + key + "\" has a wrong type: " + at(key).dump());
-    }
+    return valueAs<T>(at(key), key, name_);
   }
 
   Vec3 vector(const char* key) const {

@@ -6,9 +6,12 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <type_traits>
+#include <utility>
 
 #include <nlohmann/json.hpp>
 
+#include "voroform/core/error.hpp"
 #include "voroform/pipeline/form.hpp"
 #include "voroform/pipeline/tessellation.hpp"
 
@@ -45,6 +48,26 @@ Json metricsJson(const Form& form, const Tessellation& tessellation, const Write
 // Triangles of the boundary, polygons cut into fans.
 std::int64_t boundaryTriangles(const mesh::PolyhedralComplex& complex);
 std::uint64_t peakMemoryBytes();
+
+// The value of a key. Throws InputError that starts with `name` and names the key if the value is of another type, or a
+// whole number that a T cannot hold: the conversion of the JSON library would make a large number of -1.
+template <class T>
+T valueAs(const Json& value, const char* key, const std::string& name) {
+  const auto error = [&](const char* fault) {
+    return InputError(name + ": the key \"" + key + "\" " + fault + ": " + value.dump());
+  };
+  if constexpr (std::is_integral_v<T> && !std::is_same_v<T, bool>) {
+    if (!value.is_number_integer()) throw error("has a wrong type");
+    const bool isHeld = value.is_number_unsigned() ? std::in_range<T>(value.get<std::uint64_t>())
+                                                   : std::in_range<T>(value.get<std::int64_t>());
+    if (!isHeld) throw error("is out of range");
+  }
+  try {
+    return value.get<T>();
+  } catch (const Json::exception&) {
+    throw error("has a wrong type");
+  }
+}
 
 Json readJson(const std::filesystem::path& path);  // throws InputError
 void writeJson(const std::filesystem::path& path, const Json& json);

@@ -146,6 +146,23 @@ TEST_F(BadInput, EvaluateNeedsAResultsFolder) {
   EXPECT_THAT(broken.err, AllOf(HasSubstr("metrics.json"), HasSubstr("schema")));
 }
 
+TEST_F(BadInput, EvaluateRefusesNumbersThatARecordCannotHold) {
+  const auto refusal = [this](const std::string& seed, const std::string& sites) {
+    folder_.write("metrics.json", "{\"schema\": \"voroform.metrics/1\", \"seed\": " + seed +
+                                      ", \"counts\": {\"sites\": " + sites + "}}");
+    const Outcome outcome = run({"evaluate", folder_ / ""});
+    EXPECT_EQ(outcome.exitCode, 3);
+    EXPECT_THAT(outcome.err, HasSubstr("metrics.json: the key "));
+    return outcome.err;
+  };
+  EXPECT_THAT(refusal("-1", "10"), HasSubstr("\"seed\" is out of range: -1"));
+  EXPECT_THAT(refusal("1.5", "10"), HasSubstr("\"seed\" has a wrong type: 1.5"));
+  EXPECT_THAT(refusal("true", "10"), HasSubstr("\"seed\" has a wrong type: true"));
+  EXPECT_THAT(refusal("1", "4294967297"), HasSubstr("\"sites\" is out of range: 4294967297"));
+  // The negative control: the greatest that are held; what is missing next is told.
+  EXPECT_THAT(refusal("18446744073709551615", "2147483647"), HasSubstr("\"warnings\" is missing"));
+}
+
 // Normals that point everywhere contradict any surface.
 TEST_F(BadInput, ContradictoryNormalsAreAFailureOfTheMethod) {
   std::vector<OrientedPoint> points = torusPoints(600);
