@@ -33,7 +33,7 @@ cvt::TessellateOptions cvtOptions(const CompareOptions& options, Index sites, co
 
 // Sites by their number of iterations: one optimization serves all caps.
 struct SharedSites {
-  cvt::OptimizedSites optimized;
+  cvt::OptimizedSites<3> optimized;
   std::uint64_t peakMemoryBytes = 0;
   std::string failure;
 };

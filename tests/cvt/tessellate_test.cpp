@@ -325,7 +325,7 @@ TEST(Tessellate, OneOptimizationServesAllCaps) {
   options.sites = 400;
   options.seed = 11;
   options.cap = voronoi::CapKind::flat;  // the optimization must not ask
-  const OptimizedSites optimized = optimizeSites(*form, options, {});
+  const OptimizedSites<3> optimized = optimizeSites(*form, options, {});
   ASSERT_THAT(optimized.sites, SizeIs(400));
   for (const auto cap : {voronoi::CapKind::cvt1, voronoi::CapKind::cvt2, voronoi::CapKind::cvt3}) {
     options.cap = cap;

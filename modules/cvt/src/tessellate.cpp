@@ -7,7 +7,6 @@
 #include "voroform/core/memory.hpp"
 #include "voroform/cvt/energy.hpp"
 #include "voroform/cvt/implicit_domain.hpp"
-#include "voroform/cvt/initial_sites.hpp"
 #include "voroform/voronoi/diagram.hpp"
 
 namespace voroform::cvt {
@@ -17,24 +16,12 @@ namespace {
 // Measured peaks of whole runs with cvt3 caps, certificate and writers included: 2.0 kB a site at a million sites of
 // the torus, up to 2.8 kB at 100,000 sites of thin scans.
 constexpr std::uint64_t kBytesPerSite = 3000;
-constexpr Index kMostSites = 50'000'000;
 
 void throwIfInvalid(const TessellateOptions& options) {
   if (const auto violations = validate(options); !violations.empty()) throw UsageError(violations.front());
 }
 
 }  // namespace
-
-std::vector<std::string> validate(const TessellateOptions& options) {
-  std::vector<std::string> violations;
-  if (options.sites < 1 || options.sites > kMostSites) {
-    violations.push_back("sites is " + std::to_string(options.sites) + ", but must be from 1 to " +
-                         std::to_string(kMostSites));
-  }
-  const std::vector<std::string> others = validate(static_cast<const OptimizeOptions&>(options));
-  violations.insert(violations.end(), others.begin(), others.end());
-  return violations;
-}
 
 std::uint64_t estimatedMemory(Index sites) { return kBytesPerSite * static_cast<std::uint64_t>(std::max(sites, 0)); }
 
@@ -46,28 +33,19 @@ void requireMemory(const TessellateOptions& options) {
                          " MiB of memory, " + std::to_string(limit >> 20U) + " MiB are there: use fewer sites");
 }
 
-OptimizedSites optimizeSites(const implicit::ImplicitFunction& f, const TessellateOptions& options,
-                             const RunContext& context) {
+OptimizedSites<3> optimizeSites(const implicit::ImplicitFunction& f, const TessellateOptions& options,
+                                const RunContext& context) {
   throwIfInvalid(options);
   requireMemory(options);
-  OptimizedSites result;
-  Stopwatch watch;
-  const ImplicitDomain domain(f, options.rootFinder, options.seed);
-  result.sites = randomSites(domain, options.sites, options.seed, context);
-  result.summary.secondsInitial = watch.seconds();
-
-  watch.restart();
-  static_cast<OptimizeSummary&>(result.summary) = optimize(domain, result.sites, options, context);
-  result.summary.secondsOptimization = watch.seconds();
-  return result;
+  return optimizeSites<3>(ImplicitDomain(f, options.rootFinder, options.seed), options.given, options, context);
 }
 
-TessellateResult tessellateSites(const OptimizedSites& optimized, const implicit::ImplicitFunction& f,
+TessellateResult tessellateSites(const OptimizedSites<3>& optimized, const implicit::ImplicitFunction& f,
                                  const Frame& frame, const TessellateOptions& options, const RunContext& context) {
   throwIfInvalid(options);
   const Stopwatch watch;
   TessellateResult result;
-  result.summary = optimized.summary;
+  static_cast<SiteSummary&>(result.summary) = optimized.summary;
   voronoi::ClipOptions clipOptions;
   clipOptions.cap = options.cap;
   clipOptions.fit = options.fit;

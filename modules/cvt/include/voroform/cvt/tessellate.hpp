@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "voroform/core/run_context.hpp"
-#include "voroform/cvt/optimize.hpp"
+#include "voroform/cvt/optimized_sites.hpp"
 #include "voroform/implicit/implicit_function.hpp"
 #include "voroform/implicit/roots.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
@@ -14,9 +14,9 @@
 
 namespace voroform::cvt {
 
-struct TessellateOptions : OptimizeOptions {
-  // Number of sites, at least 1.
-  Index sites = 1000;
+struct TessellateOptions : SiteOptions {
+  // Initial sites for Initialization::given, in the form's coordinates.
+  std::vector<Vec3> given;
   // Caps of the result. The optimization itself always uses CapKind::flat, the cheapest.
   voronoi::CapKind cap = voronoi::CapKind::cvt3;
   // Fit the boundary to S in the mean square (voronoi::ClipOptions::fit): with the caps of cvt3 that is cvt4.
@@ -26,21 +26,10 @@ struct TessellateOptions : OptimizeOptions {
   // usableMemory().
   std::uint64_t memoryLimit = 0;
 };
-// Every violation of the options, as sentences naming field, value and rule; empty if there is none.
-std::vector<std::string> validate(const TessellateOptions& options);
-
-struct TessellateSummary : OptimizeSummary {  // its energies are of flat caps
-  Index emptySites = 0;                       // sites without a cell at the end: dropped
+struct TessellateSummary : SiteSummary {  // its energies are of flat caps
+  Index emptySites = 0;                   // sites without a cell at the end: dropped
   voronoi::ClipSummary clip;
-  double secondsInitial = 0;
-  double secondsOptimization = 0;
   double secondsClipping = 0;
-};
-
-// Sites that were optimized, and what is known of them before they are clipped.
-struct OptimizedSites {
-  std::vector<Vec3> sites;
-  TessellateSummary summary;  // all but clip, emptySites and secondsClipping
 };
 
 struct TessellateResult {
@@ -51,12 +40,12 @@ struct TessellateResult {
 // Initial sites and their optimization; the kind of caps asked for plays no part in it, so that one optimization serves
 // all kinds. The same bits for any number of threads. Throws UsageError on bad options, MethodError if f has no inside
 // that the sites could be placed in, EnvironmentError if the memory does not suffice, Cancelled.
-OptimizedSites optimizeSites(const implicit::ImplicitFunction& f, const TessellateOptions& options,
-                             const RunContext& context);
+OptimizedSites<3> optimizeSites(const implicit::ImplicitFunction& f, const TessellateOptions& options,
+                                const RunContext& context);
 
 // The tessellation of these sites with the caps and the root finder of the options; the rest of the options is for
-// optimizeSites. Completes the sites' summary.
-TessellateResult tessellateSites(const OptimizedSites& optimized, const implicit::ImplicitFunction& f,
+// optimizeSites.
+TessellateResult tessellateSites(const OptimizedSites<3>& optimized, const implicit::ImplicitFunction& f,
                                  const Frame& frame, const TessellateOptions& options, const RunContext& context);
 
 // Both in one: optimizeSites, then tessellateSites. Throws as optimizeSites does.
