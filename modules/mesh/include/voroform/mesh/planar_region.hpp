@@ -4,23 +4,29 @@
 #include <cstdint>
 #include <filesystem>
 #include <istream>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "voroform/core/error.hpp"
 #include "voroform/core/run_context.hpp"
 #include "voroform/core/types.hpp"
 
 namespace voroform::mesh {
 
-// What is wrong with rings of points that shall bound a region: "ring 2, point 5: …", both counted from 1.
+// What is wrong with rings of points that shall bound a region, and where: ring and point from 0.
 struct RingFault {
-  std::string message;   // without the place
-  std::size_t ring = 0;  // from 0
+  std::string message;
+  std::size_t ring = 0;
   std::size_t point = 0;
-  std::string text() const;
+};
+// Says the place first, counted from 1: "ring 2, point 5: …".
+struct InvalidRegion : InputError {
+  explicit InvalidRegion(RingFault what);
+  RingFault fault;
 };
 
 // The first fault of the rings, if any: no ring, fewer than 3 points, a coordinate that is not finite, a point equal to
@@ -33,7 +39,7 @@ std::optional<RingFault> findFault(std::span<const std::vector<Vec2>> rings);
 // clockwise, whatever their direction was when given. Safe to ask from many threads at once.
 class PlanarRegion {
  public:
-  // Throws InputError, with the text of findFault().
+  // Throws InvalidRegion with the first fault, or if double precision does not hold the area.
   explicit PlanarRegion(std::span<const std::vector<Vec2>> rings);
 
   // The points of all rings; edge k runs from point k to point next(k) of the same ring.
@@ -58,20 +64,13 @@ class PlanarRegion {
   double signedDistance(const Vec2& point) const;
 
  private:
-  // A binary tree over runs of consecutive edges: a run of a ring is compact. Leaf runs hold kLeafEdges edges; the root
-  // is node 1, the children of node i are 2i and 2i + 1.
-  static constexpr std::size_t kLeafEdges = 4;
-
-  void buildTree();
-  // Calls visit(edge) for the edges of all leaves that enter(box) lets through.
-  template <class Enter, class Visit>
-  void forEachEdge(const Enter& enter, const Visit& visit) const;
+  class EdgeTree;
 
   std::vector<Vec2> points_;
   std::vector<std::uint32_t> ringOffsets_ = {0};
   std::vector<Index> depths_;
   std::vector<Index> next_;
-  std::vector<Box2> tree_;
+  std::shared_ptr<const EdgeTree> edges_;
   double area_ = 0;
   Box2 bounds_;
 };
