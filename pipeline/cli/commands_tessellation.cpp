@@ -13,8 +13,22 @@ constexpr const char* kInvalid =
     "the tessellation fails its certificate of validity; its files are for examination only; another number of sites "
     "or --method cvt2 may help";
 
+// The sites of the file that --init names, in the form's coordinates.
+std::vector<Vec3> givenSites(const Settings& settings, const pipeline::Form& form, const RunContext& context) {
+  if (siteOptions(settings).initialization != cvt::Initialization::given) return {};
+  std::vector<Vec3> sites = pipeline::readSites(settings.initialization, context);
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    sites[i] -= form.record.frame.origin;
+    if (!(form.function->value(sites[i]) < 0)) {
+      throw InputError(settings.initialization + ": site " + std::to_string(i + 1) + " lies outside the solid");
+    }
+  }
+  return sites;
+}
+
 int makeResults(const pipeline::Form& form, const Settings& settings, const RunContext& context) {
-  const pipeline::WriteOptions options = writeOptions(settings);
+  pipeline::WriteOptions options = writeOptions(settings);
+  options.tessellate.given = givenSites(settings, form, context);
   const pipeline::Tessellation tessellation =
       pipeline::tessellate(form, options.tessellate, context, !settings.noAccuracy);
   const std::vector<std::string> names = pipeline::writeResults(form, tessellation, options, settings.output, context);

@@ -160,6 +160,53 @@ void addFormOptions(CLI::App& command, Settings& settings) {
       ->check(inRange(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
 }
 
+namespace {
+
+void addSiteOptions(CLI::App& command, Settings& settings) {
+  command.add_option("--sites", settings.sites, "Number of sites, and so of cells")
+      ->check(inRange(Index{1}, std::numeric_limits<Index>::max()))
+      ->capture_default_str();
+  std::string kinds;
+  for (const std::string& name : pipeline::initializationNames()) kinds += name + ", ";
+  command
+      .add_option("--init", settings.initialization,
+                  "Initial sites: " + kinds + "or a file of sites in any format of clouds")
+      ->type_name("KIND|FILE")
+      ->capture_default_str();
+  command
+      .add_option("--subdivisions", settings.subdivisions,
+                  "Of hierarchical sites; the most that their number allows if not given")
+      ->check(inRange(0, 20));
+  command.add_option("--iterations", settings.iterations, "Iterations of the optimizer; 0 clips the initial sites")
+      ->check(inRange(0, 1'000'000))
+      ->capture_default_str();
+  command.add_option("--optimizer", settings.optimizer, "How the sites are moved")
+      ->check(oneOf(pipeline::optimizerNames()))
+      ->capture_default_str();
+  command
+      .add_option("--perturbations", settings.perturbations, "Tries of the Monte-Carlo optimizer to leave a minimum")
+      ->check(inRange(0, 1'000'000))
+      ->capture_default_str();
+  command
+      .add_option("--convergence", settings.convergence,
+                  "Stop when the sites' distances to their centroids, in cell sizes, have this root mean square; 0: "
+                  "never")
+      ->check(inRange(0.0, 1e9))
+      ->capture_default_str();
+  command
+      .add_option("--gradient-tolerance", settings.gradientTolerance,
+                  "Stop when the gradient's norm is this share of the coordinates' norm (the thesis's rule); 0: never")
+      ->check(inRange(0.0, 1e9))
+      ->capture_default_str();
+  command
+      .add_option("--relative-error", settings.relativeError,
+                  "Stop when the energy is within this share of its optimum; 0: never")
+      ->check(inRange(0.0, 1e9))
+      ->capture_default_str();
+}
+
+}  // namespace
+
 void addTessellationOptions(CLI::App& command, Settings& settings) {
   command
       .add_option("--method", settings.method,
@@ -168,22 +215,9 @@ void addTessellationOptions(CLI::App& command, Settings& settings) {
       ->check(oneOf({"cvt1", "cvt2", "cvt3", "cvt4"}))
       ->capture_default_str();
   command.add_flag("--fit", settings.fit, "Fit the caps of cvt1 or cvt2, too (cvt3 fitted is cvt4)");
-  command.add_option("--sites", settings.sites, "Number of sites, and so of cells")
-      ->check(inRange(Index{1}, std::numeric_limits<Index>::max()))
-      ->capture_default_str();
-  command.add_option("--iterations", settings.iterations, "Iterations of the optimizer; 0 clips the initial sites")
-      ->check(inRange(0, 1'000'000))
-      ->capture_default_str();
-  command.add_option("--optimizer", settings.optimizer, "How the sites are moved")
-      ->check(oneOf({"lbfgs", "lloyd"}))
-      ->capture_default_str();
+  addSiteOptions(command, settings);
   command.add_option("--root-finder", settings.rootFinder, "How the surface is found on an edge")
       ->check(oneOf({"itp", "bisection"}))
-      ->capture_default_str();
-  command
-      .add_option("--relative-error", settings.relativeError,
-                  "Stop when the energy is within this share of its optimum; 0: never")
-      ->check(inRange(0.0, 1e9))
       ->capture_default_str();
   command.add_option("--formats", settings.formats, "Further files to write, separated by commas")
       ->type_name("LIST")
@@ -337,6 +371,21 @@ void requireMeaning(const pipeline::Form& form, const CLI::App& command) {
   }
 }
 
+cvt::SiteOptions siteOptions(const Settings& settings) {
+  cvt::SiteOptions options;
+  options.sites = settings.sites;
+  options.initialization = pipeline::initializationNamed(settings.initialization).value_or(cvt::Initialization::given);
+  options.subdivisions = settings.subdivisions.value_or(-1);
+  options.iterations = settings.iterations;
+  options.optimizer = pipeline::optimizerNamed(settings.optimizer);
+  options.perturbations = settings.perturbations;
+  options.convergence = settings.convergence;
+  options.gradientTolerance = settings.gradientTolerance;
+  options.relativeError = settings.relativeError;
+  options.seed = settings.seed;
+  return options;
+}
+
 pipeline::WriteOptions writeOptions(const Settings& settings) {
   pipeline::WriteOptions options;
   for (const std::string& name : split(settings.formats)) {
@@ -346,16 +395,12 @@ pipeline::WriteOptions writeOptions(const Settings& settings) {
   }
   options.threads = effectiveThreads(settings);
   cvt::TessellateOptions& cvt = options.tessellate;
-  cvt.sites = settings.sites;
-  cvt.iterations = settings.iterations;
-  cvt.optimizer = settings.optimizer == "lloyd" ? cvt::Optimizer::lloyd : cvt::Optimizer::lbfgs;
+  static_cast<cvt::SiteOptions&>(cvt) = siteOptions(settings);
   const pipeline::CvtMethod method = pipeline::cvtMethod(settings.method);
   cvt.cap = method.cap;
   cvt.fit = method.fit || settings.fit;
   cvt.rootFinder = settings.rootFinder == "bisection" ? implicit::RootFinder::bisection : implicit::RootFinder::itp;
-  cvt.relativeError = settings.relativeError;
   cvt.memoryLimit = settings.memoryLimit;
-  cvt.seed = settings.seed;
   return options;
 }
 

@@ -40,7 +40,12 @@ struct Settings {
   bool accuracySamples = false;
   Index sites = 15000;
   int iterations = 10;
+  std::string initialization = "random";  // or a file of sites
+  std::optional<int> subdivisions;
   std::string optimizer = "lbfgs";
+  int perturbations = 200;
+  double convergence = 5e-4;
+  double gradientTolerance = 0;
   std::string rootFinder = "itp";
   double relativeError = 0;
   std::string formats;
@@ -92,6 +97,7 @@ void requireFormOptions(const Settings& settings, const CLI::App& command);
 // Throws UsageError if an option was given that has no meaning for the form that was made: an envelope for the signed
 // distance to a mesh, which is closed; a number of samples for anything but a mesh's Poisson form.
 void requireMeaning(const pipeline::Form& form, const CLI::App& command);
+cvt::SiteOptions siteOptions(const Settings& settings);
 pipeline::WriteOptions writeOptions(const Settings& settings);
 pipeline::CompareOptions compareOptions(const Settings& settings);
 // The parts of a list separated by commas, without spaces around them.

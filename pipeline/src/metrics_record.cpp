@@ -17,8 +17,13 @@ Json optionsJson(const FormRecord& form, const WriteOptions& options) {
   const cvt::TessellateOptions& cvt = options.tessellate;
   return {{"method", toString(CvtMethod{cvt.cap, cvt.fit})},
           {"sites", cvt.sites},
+          {"initialization", toString(cvt.initialization)},
+          {"subdivisions", cvt.subdivisions},
           {"iterations", cvt.iterations},
           {"optimizer", toString(cvt.optimizer)},
+          {"perturbations", cvt.perturbations},
+          {"convergence", cvt.convergence},
+          {"gradient_tolerance", cvt.gradientTolerance},
           {"root_finder", toString(cvt.rootFinder)},
           {"relative_error", cvt.relativeError},
           {"envelope", toString(form.envelope)},

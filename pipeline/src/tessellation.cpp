@@ -77,8 +77,6 @@ const char* toString(ExtraFormat format) {
   throw UsageError("unknown format");
 }
 
-const char* toString(cvt::Optimizer optimizer) { return optimizer == cvt::Optimizer::lbfgs ? "lbfgs" : "lloyd"; }
-
 namespace {
 
 struct NamedMethod {

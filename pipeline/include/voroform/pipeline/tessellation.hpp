@@ -18,13 +18,13 @@
 #include "voroform/metrics/regularity.hpp"
 #include "voroform/pipeline/artifact_store.hpp"
 #include "voroform/pipeline/form.hpp"
+#include "voroform/pipeline/site_options.hpp"
 
 namespace voroform::pipeline {
 
 // Files beside the ones that are always written.
 enum class ExtraFormat { obj, off, stl, adjacency };
 const char* toString(ExtraFormat format);
-const char* toString(cvt::Optimizer optimizer);
 // A CVT's method by its name: cvt1, cvt2, cvt3, cvt4 (cvt3 fitted), cvt1+fit, cvt2+fit.
 struct CvtMethod {
   voronoi::CapKind cap = voronoi::CapKind::cvt3;
