@@ -102,7 +102,7 @@ RayCrossing crossRay(const RingEdge& edge, const Vec2& p) {
   const Vec2& high = rises ? edge.to : edge.from;
   if (p.y() < low.y() || p.y() > high.y()) return RayCrossing::none;
   if (low.y() == high.y()) {
-    const auto [left, right] = std::minmax(low.x(), high.x());
+    const auto [left, right] = std::minmax({low.x(), high.x()});
     return left <= p.x() && p.x() <= right ? RayCrossing::onEdge : RayCrossing::none;
   }
   const auto side = CGAL::orientation(toPoint(low), toPoint(high), toPoint(p));

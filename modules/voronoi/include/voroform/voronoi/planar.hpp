@@ -25,6 +25,7 @@ struct PlanarDiagram {
   // Only vertices of real cells. The order depends on the sites alone.
   std::vector<Vec2> vertices;
   std::vector<std::array<Index, 3>> vertexSites;  // a counter-clockwise triangle
+  std::vector<std::array<Index, 3>> vertexEdges;  // opposite each site; kNone: not a real cell's
 
   // Edges between a real site a and a site b > a. Site a lies on the left of the way from the first vertex to the
   // second. Where four or more sites lie on one circle some edges have no length.
@@ -65,8 +66,8 @@ struct PlanarClip {
   // The edges that the boundary crosses, ascending, and their crossings in order from the edge's first vertex.
   std::vector<Index> cutEdges;
   std::vector<std::uint32_t> cutOffsets;
-  std::vector<Index> cutCrossings;
-  std::vector<std::uint8_t> isCut;  // of each edge
+  std::vector<Index> cutCrossings;  // as points, in the common numbering
+  std::vector<Index> cutRows;       // of each edge: its row among the cut ones, or kNone
 
   // A piece of the region's boundary within one cell, the cell on its left.
   struct Piece {
@@ -99,8 +100,8 @@ struct CellWall {
   Index to = kNone;
   Index neighbor = kNone;  // the site across it; kNone: the region's boundary
 };
-// The border of a site's clipped cell, in no order; appended to `walls`. Within the cell's closed loops each point is
-// left as often as it is reached. Empty for an empty cell.
+// Appends the border of a site's clipped cell to `walls`, in no order: closed loops that reach each of their points
+// once and leave it once. Nothing for an empty cell.
 void appendCellWalls(const PlanarDiagram& diagram, const PlanarClip& clip, Index site, std::vector<CellWall>& walls);
 
 // Mass, first and second moment of each clipped cell about its site, for the density 1; exact up to rounding. Zero for
