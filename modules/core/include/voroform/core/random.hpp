@@ -20,7 +20,10 @@ enum class RandomStream : std::uint64_t {
   insertion,
   test,
   surfaceSampling,
-  meshSampling
+  meshSampling,
+  hammersley,
+  lattice,
+  thinning
 };
 
 // 64 random bits for a key: SplitMix64's finalizer over the mixed key.

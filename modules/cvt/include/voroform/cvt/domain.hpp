@@ -13,15 +13,16 @@
 
 namespace voroform::cvt {
 
-// E = Σᵢ ∫_Ωᵢ ‖x − xᵢ‖² dx over the clipped cells Ωᵢ, and what its gradient 2 mᵢ (xᵢ − cᵢ) needs (Liu et al. 2009).
+// E = Σᵢ ∫_Ωᵢ ρ ‖x − xᵢ‖² dx over the clipped cells Ωᵢ, and what its gradient 2 mᵢ (xᵢ − cᵢ) needs (Liu et al. 2009).
+// With a density ρ (density.hpp) masses and centroids are weighted by it, and each cell has a size of its own.
 template <int M>
 struct Evaluation {
   double energy = 0;
-  double volume = 0;            // Σ mᵢ
-  Index emptyCells = 0;         // sites whose cell is empty, or nearly so: mass below 1e-6·V/n
-  double rmsMove = 0;           // rms‖cᵢ − xᵢ‖/h over the other sites, h = (V/n)^(1/M)
+  double volume = 0;     // Σ mᵢ; with a density Σ |Ωᵢ|·(mᵢ/|Ωᵢ|)^(M/(M+2)), to stand in optimalEnergy()
+  Index emptyCells = 0;  // sites whose cell is empty, or nearly so: mass below 1e-6·V/n
+  double rmsMove = 0;    // rms‖cᵢ − xᵢ‖/h over the other sites, h = (V/n)^(1/M); with a density |Ωᵢ|^(1/M)
   double relativeGradient = 0;  // ‖g‖/‖X‖, g the gradient and X the sites' coordinates (thesis, section 4.2.4)
-  double meanRegularity = 0;    // mean of G over the other sites' cells
+  double meanRegularity = 0;    // mean of G, weighted by ρ, over the other sites' cells
   std::vector<voronoi::Moments<M>> moments;  // of each site; zero for an empty cell
   double secondsDelaunay = 0;
   double secondsAfterDelaunay = 0;  // flattening, clipping, integrals
@@ -43,6 +44,8 @@ class Domain {
   virtual bool contains(const Vec<M>& p) const = 0;
   // Area or volume, to a few per cent at least: it sets scales.
   virtual double volume() const = 0;
+  // How densely sites are to lie at p, relative to the most in the domain; in (0, 1].
+  virtual double siteDensity(const Vec<M>& p) const { return static_cast<void>(p), 1.0; }
   // The energy of the sites. They must be distinct and inside siteBox(): MethodError otherwise.
   virtual Evaluation<M> evaluate(std::span<const Vec<M>> sites, const RunContext& context) const = 0;
   // Throws as evaluate does.
@@ -54,6 +57,7 @@ template <int M>
 double optimalRegularity();
 
 // E_m = m·n·(V/n)^((m+2)/m)·G_m: the energy if all n cells had the shape of the best lattice's (thesis, equation 3.5).
+// With a density ∫ ρ^(M/(M+2)) dx takes the place of V (Gersho 1979).
 template <int M>
 double optimalEnergy(Index sites, double volume);
 

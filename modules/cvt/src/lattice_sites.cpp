@@ -1,0 +1,257 @@
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <limits>
+#include <numbers>
+
+#include "site_candidates.hpp"
+#include "voroform/core/random.hpp"
+#include "voroform/cvt/initial_sites.hpp"
+
+namespace voroform::cvt {
+
+namespace {
+
+template <int M>
+using Mat = Eigen::Matrix<double, M, M>;
+
+// Placements whose energy is evaluated: as many as there are sites to this number, within limits. In space an
+// evaluation costs five times as much.
+template <int M>
+constexpr std::size_t kEvaluatedSites = M == 2 ? 1'000'000 : 200'000;
+constexpr std::size_t kFewestPlacements = 4;
+constexpr std::size_t kMostPlacements = 96;
+// The first guess of the spacing errs by less than this; steps by which that is widened; halvings of it.
+constexpr double kSpacingError = 0.03;
+constexpr int kWidenings = 40;
+constexpr int kHalvings = 40;
+// Ranges of exact spacings below this share of the error are not looked for.
+constexpr double kLeastRange = 0.05;
+// Near the axes' directions: tilts up to this angle, in radians.
+constexpr double kSmallTilt = 0.03;
+
+// Columns are the lattice's basis; a cell has the volume 1. In the plane rows run along x.
+template <int M>
+Mat<M> latticeBasis() {
+  Mat<M> basis;
+  if constexpr (M == 2) {
+    const double a = std::sqrt(2 / std::numbers::sqrt3);
+    basis << a, a / 2, 0, a * std::numbers::sqrt3 / 2;
+  } else {
+    const double edge = std::cbrt(2.0);
+    basis << edge, 0, edge / 2, 0, edge, edge / 2, 0, 0, edge / 2;
+  }
+  return basis;
+}
+
+// How the lattice lies around the center of the domain's bounds, up to its spacing.
+template <int M>
+struct Placement {
+  Mat<M> rotation = Mat<M>::Identity();
+  Vec<M> offset = Vec<M>::Zero();  // of the center, in units of the basis
+};
+
+Mat<2> rotationOf(double angle) { return Eigen::Rotation2Dd(angle).toRotationMatrix(); }
+
+// Dense rows or layers along the axes of the bounds, points symmetric about their center or nearly so. Boundaries are
+// often parallel to the axes.
+std::vector<Placement<2>> alignedPlacements(Placement<2> /*dimension*/) {
+  std::vector<Placement<2>> placements;
+  for (const double angle : {0.0, std::numbers::pi / 2}) {
+    for (const double row : {0.0, 0.5}) {
+      for (const double along : {0.0, 0.25, 0.5, 0.75}) placements.push_back({rotationOf(angle), {along, row}});
+    }
+  }
+  return placements;
+}
+
+std::vector<Placement<3>> alignedPlacements(Placement<3> /*dimension*/) {
+  const auto rotation = [](double angle, Index axis) -> Mat3 {
+    return Eigen::AngleAxisd(angle, Vec3::Unit(axis)).toRotationMatrix();
+  };
+  std::vector<Placement<3>> placements;
+  for (const Mat3& turn : {Mat3(Mat3::Identity()), rotation(std::numbers::pi / 4, 2), rotation(std::numbers::pi / 4, 0),
+                           rotation(std::numbers::pi / 4, 1)}) {
+    // A site, halfway between sites of the first and of the second order, and the corner of a cell.
+    for (const Vec3& offset : {Vec3(0, 0, 0), Vec3(0, 0, 0.5), Vec3(0.5, 0, 0), Vec3(0.5, 0.25, 0)}) {
+      placements.push_back({turn, offset});
+    }
+  }
+  return placements;
+}
+
+Mat<2> randomTurn(std::uint64_t seed, std::uint64_t k, Placement<2> /*dimension*/) {
+  return rotationOf(2 * std::numbers::pi * randomUnit(seed, RandomStream::lattice, k));
+}
+Mat3 randomTurn(std::uint64_t seed, std::uint64_t k, Placement<3> /*dimension*/) {
+  return randomRotation(randomBits(seed, RandomStream::lattice, k));
+}
+
+Mat<2> smallTurn(double angle, const Vec2& /*axis*/) { return rotationOf(angle); }
+Mat3 smallTurn(double angle, const Vec3& axis) {
+  return Eigen::AngleAxisd(angle, axis.stableNormalized()).toRotationMatrix();
+}
+
+// In turn: aligned with the axes, nearly so, and anyhow.
+template <int M>
+Placement<M> placement(std::uint64_t seed, std::size_t k) {
+  static const std::vector<Placement<M>> aligned = alignedPlacements(Placement<M>{});
+  const std::uint64_t key = 16 * k;
+  Placement<M> result;
+  if (k % 3 < 2 && k / 3 < aligned.size()) result = aligned[k / 3];
+  if (k % 3 == 0 && k / 3 < aligned.size()) return result;
+  const Box<M> unit(Vec<M>::Zero(), Vec<M>::Ones());
+  const Box<M> cube(-Vec<M>::Ones(), Vec<M>::Ones());
+  result.offset = randomInBox(seed, RandomStream::lattice, key, unit);
+  if (k % 3 == 1) {
+    const double angle = kSmallTilt * (2 * randomUnit(seed, RandomStream::lattice, key + 8) - 1);
+    result.rotation = smallTurn(angle, randomInBox(seed, RandomStream::lattice, key + 3, cube)) * result.rotation;
+  } else {
+    result.rotation = randomTurn(seed, key + 9, Placement<M>{});
+  }
+  return result;
+}
+
+// Points about the origin, for spacing 1: those of the lattice that a box of these half sizes holds.
+template <int M>
+std::vector<Vec<M>> latticePoints(const Placement<M>& placement, const Vec<M>& halfSizes) {
+  const Mat<M> basis = placement.rotation * latticeBasis<M>();
+  // The coordinates c of p = basis·c in the box: |cᵢ| ≤ Σⱼ |basis⁻¹ᵢⱼ|·halfSizesⱼ.
+  const Vec<M> reach = basis.inverse().cwiseAbs() * halfSizes + Vec<M>::Ones();
+  const Eigen::Matrix<Index, M, 1> most = reach.template cast<Index>();
+  const Box<M> box(-halfSizes, halfSizes);
+  std::vector<Vec<M>> points;
+  Eigen::Matrix<Index, M, 1> c = -most;
+  while (true) {
+    const Vec<M> p = basis * (c.template cast<double>() + placement.offset);
+    if (box.contains(p)) points.push_back(p);
+    Index axis = 0;
+    while (axis < M && c[axis] == most[axis]) {
+      c[axis] = -most[axis];
+      ++axis;
+    }
+    if (axis == M) return points;
+    ++c[axis];
+  }
+}
+
+// A placed lattice and the spacing that puts the wanted number of its points inside, or nearly so.
+template <int M>
+class PlacedLattice {
+ public:
+  PlacedLattice(const Domain<M>& domain, double spacing, std::size_t count, const Placement<M>& placement,
+                const RunContext& context)
+      : domain_(domain), placement_(placement), context_(context), count_(static_cast<std::ptrdiff_t>(count)) {
+    search(spacing);
+  }
+
+  // Points inside beyond the wanted number.
+  std::ptrdiff_t excess() const { return bestExcess_; }
+
+  std::vector<Vec<M>> sites() {
+    cover(best_);
+    return pointsInside(
+        domain_, points_.size(), [&](std::size_t i) { return at(i, best_); }, context_);
+  }
+
+ private:
+  Vec<M> at(std::size_t i, double spacing) const { return domain_.bounds().center() + spacing * points_[i]; }
+
+  // Sees to the points that fill the bounds at this spacing and at all larger ones.
+  void cover(double spacing) {
+    if (spacing >= leastSpacing_) return;
+    leastSpacing_ = spacing;
+    points_ = latticePoints<M>(placement_, domain_.bounds().sizes() / (2 * spacing));
+  }
+
+  std::ptrdiff_t excessAt(double spacing) {
+    cover(spacing);
+    const std::size_t inside = countInside(
+        domain_, points_.size(), [&](std::size_t i) { return at(i, spacing); }, context_);
+    const std::ptrdiff_t excess = static_cast<std::ptrdiff_t>(inside) - count_;
+    if (std::abs(excess) < std::abs(bestExcess_)) {
+      bestExcess_ = excess;
+      best_ = spacing;
+    }
+    return excess;
+  }
+
+  // As the spacing grows, points leave the domain one by one, unless the placement has symmetries of the domain's.
+  void search(double guess) {
+    double dense = guess * (1 - kSpacingError);
+    double loose = guess * (1 + kSpacingError);
+    for (int step = 0; step < kWidenings && excessAt(dense) < 0; ++step) dense *= 1 - kSpacingError;
+    for (int step = 0; step < kWidenings && excessAt(loose) > 0; ++step) loose *= 1 + kSpacingError;
+    for (int step = 0; step < kHalvings && bestExcess_ != 0; ++step) {
+      const double middle = 0.5 * (dense + loose);
+      (excessAt(middle) > 0 ? dense : loose) = middle;
+    }
+    if (bestExcess_ == 0) best_ = 0.5 * (lastExact(best_, 1 - kSpacingError) + lastExact(best_, 1 + kSpacingError));
+  }
+
+  // With symmetries a range of spacings has the same number inside: about where it ends, on the way from an exact
+  // spacing to a multiple of it.
+  double lastExact(double exact, double factor) {
+    if (excessAt(exact * (1 + kLeastRange * (factor - 1))) != 0) return exact;
+    double other = exact * factor;
+    for (int step = 0; step < 8; ++step) {
+      const double middle = 0.5 * (exact + other);
+      (excessAt(middle) == 0 ? exact : other) = middle;
+    }
+    return exact;
+  }
+
+  const Domain<M>& domain_;
+  const Placement<M>& placement_;
+  const RunContext& context_;
+  std::ptrdiff_t count_;
+  std::vector<Vec<M>> points_;
+  double leastSpacing_ = std::numeric_limits<double>::infinity();
+  double best_ = 0;
+  std::ptrdiff_t bestExcess_ = std::numeric_limits<std::ptrdiff_t>::max();
+};
+
+// The energy of the sites moved to the centroids of their cells, the cells unchanged: closer to what the optimization
+// will make of them than their own.
+template <int M>
+double centroidalEnergy(const Evaluation<M>& evaluation) {
+  double energy = evaluation.energy;
+  for (const voronoi::Moments<M>& cell : evaluation.moments) {
+    if (cell.mass > 0) energy -= cell.first.squaredNorm() / cell.mass;
+  }
+  return energy;
+}
+
+}  // namespace
+
+template <int M>
+std::vector<Vec<M>> latticeSites(const Domain<M>& domain, Index count, std::uint64_t seed, const RunContext& context) {
+  const auto wanted = static_cast<std::size_t>(count);
+  const double spacing = std::pow(domain.volume() / static_cast<double>(count), 1.0 / M);
+  const std::size_t placements = std::clamp(kEvaluatedSites<M> / wanted, kFewestPlacements, kMostPlacements);
+  std::vector<Vec<M>> best;
+  std::size_t leastMiss = std::numeric_limits<std::size_t>::max();
+  double leastEnergy = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < placements; ++k) {
+    const Placement<M> placed = placement<M>(seed, k);
+    PlacedLattice<M> lattice(domain, spacing, wanted, placed, context);
+    const auto miss = static_cast<std::size_t>(std::abs(lattice.excess()));
+    if (miss > leastMiss) continue;
+    if (miss < leastMiss) leastEnergy = std::numeric_limits<double>::infinity();
+    std::vector<Vec<M>> sites = inSpatialOrder<M>(lattice.sites());
+    if (sites.empty()) continue;
+    leastMiss = miss;
+    const double energy = centroidalEnergy(domain.evaluate(sites, context));
+    if (energy < leastEnergy) {
+      leastEnergy = energy;
+      best = std::move(sites);
+    }
+  }
+  if (best.empty()) throwTooThin(mostCandidates(wanted), 0, wanted);
+  return best;
+}
+
+template std::vector<Vec2> latticeSites<2>(const Domain<2>&, Index, std::uint64_t, const RunContext&);
+template std::vector<Vec3> latticeSites<3>(const Domain<3>&, Index, std::uint64_t, const RunContext&);
+
+}  // namespace voroform::cvt
