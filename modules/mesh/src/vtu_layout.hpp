@@ -1,7 +1,6 @@
 // What the writer and the reader of cells.vtu share: names of the arrays and the order of the polyhedra's streams.
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -9,13 +8,8 @@
 
 namespace voroform::mesh::vtu {
 
-static_assert(std::endian::native == std::endian::little, "cells.vtu is written as the machine's own bytes");
-
 inline constexpr std::int32_t kFormatVersion = 1;
 inline constexpr std::uint8_t kPolyhedronType = 42;
-
-// What follows the last block.
-inline constexpr char kEnd[] = "\n  </AppendedData>\n</VTKFile>\n";
 
 // Field data.
 inline constexpr char kFormat[] = "voroform_format";

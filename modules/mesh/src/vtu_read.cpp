@@ -9,6 +9,7 @@
 #include "voroform/core/error.hpp"
 #include "voroform/core/input_file.hpp"
 #include "voroform/mesh/formats.hpp"
+#include "vtu_appended.hpp"
 #include "vtu_header.hpp"
 #include "vtu_layout.hpp"
 

@@ -1,92 +1,19 @@
-// Writes cells.vtu. VTK's own writer gives different bytes from call to call, so the file is laid out here.
-#include <functional>
+// Writes cells.vtu.
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "voroform/core/error.hpp"
 #include "voroform/core/output_file.hpp"
-#include "voroform/core/xml_text.hpp"
 #include "voroform/mesh/formats.hpp"
+#include "vtu_appended.hpp"
 #include "vtu_layout.hpp"
 
 namespace voroform::mesh {
 
 namespace {
 
-constexpr std::size_t kBufferBytes = std::size_t{4} << 20U;
-
-// Collects values and hands them to the stream in large pieces.
-class Buffer {
- public:
-  explicit Buffer(std::ostream& stream) : stream_(stream) { bytes_.reserve(kBufferBytes + 64); }
-
-  template <class T>
-  void put(const T& value) {
-    const auto* raw = reinterpret_cast<const char*>(&value);
-    bytes_.insert(bytes_.end(), raw, raw + sizeof(T));
-    if (bytes_.size() >= kBufferBytes) flush();
-  }
-  void write(const void* data, std::size_t bytes) {
-    flush();
-    stream_.write(static_cast<const char*>(data), static_cast<std::streamsize>(bytes));
-  }
-  void flush() {
-    stream_.write(bytes_.data(), static_cast<std::streamsize>(bytes_.size()));
-    bytes_.clear();
-  }
-
- private:
-  std::ostream& stream_;
-  std::vector<char> bytes_;
-};
-
-// The XML part with the offsets of the blocks, and what writes each block's bytes.
-class Layout {
- public:
-  using Emit = std::function<void(Buffer&)>;
-
-  void text(const std::string& line) { xml_ += line + "\n"; }
-  void startBlocks() { xml_ += "_"; }
-
-  // tuples < 0: the count follows from the number of points or cells (VTK wants it for field data only).
-  void array(const std::string& type, const std::string& name, int components, std::int64_t tuples, std::uint64_t bytes,
-             Emit emit) {
-    xml_ += "        <DataArray type=\"" + type + "\" Name=\"" + xmlEscaped(name) + "\"";
-    if (components > 1) xml_ += " NumberOfComponents=\"" + std::to_string(components) + "\"";
-    if (tuples >= 0) xml_ += " NumberOfTuples=\"" + std::to_string(tuples) + "\"";
-    xml_ += " format=\"appended\" offset=\"" + std::to_string(offset_) + "\"/>\n";
-    offset_ += sizeof(std::uint64_t) + bytes;
-    blocks_.push_back({bytes, std::move(emit)});
-  }
-
-  template <class T>
-  void vector(const std::string& type, const std::string& name, int components, bool field,
-              const std::vector<T>& values) {
-    const std::uint64_t bytes = values.size() * sizeof(T);
-    array(type, name, components, field ? static_cast<std::int64_t>(values.size()) : -1, bytes,
-          [&values, bytes](Buffer& buffer) { buffer.write(values.data(), bytes); });
-  }
-
-  void write(std::ostream& stream) const {
-    stream << xml_;
-    Buffer buffer(stream);
-    for (const Block& block : blocks_) {
-      buffer.put(block.bytes);
-      block.emit(buffer);
-    }
-    buffer.flush();
-  }
-
- private:
-  struct Block {
-    std::uint64_t bytes;
-    Emit emit;
-  };
-  std::string xml_;
-  std::uint64_t offset_ = 0;
-  std::vector<Block> blocks_;
-};
+using Buffer = vtu::AppendedBuffer;
+using Layout = vtu::AppendedLayout;
 
 void addPoints(Layout& layout, const std::string& name, const std::vector<Vec3>& points, const Frame& frame) {
   layout.array("Float64", name, 3, -1, points.size() * sizeof(Vec3), [&](Buffer& buffer) {
@@ -129,9 +56,6 @@ void writeCellsVtu(const std::filesystem::path& path, const PolyhedralComplex& c
   const bool shifted = vtu::hasOrigin(complex.frame);
 
   Layout layout;
-  layout.text("<?xml version=\"1.0\"?>");
-  layout.text("<VTKFile type=\"UnstructuredGrid\" version=\"1.0\" byte_order=\"LittleEndian\" header_type=\"UInt64\">");
-  layout.text("  <UnstructuredGrid>");
   layout.text("      <FieldData>");
   const std::vector<std::int32_t> format = {vtu::kFormatVersion};
   const std::vector<Vec3> origin = {complex.frame.origin};
@@ -172,12 +96,8 @@ void writeCellsVtu(const std::filesystem::path& path, const PolyhedralComplex& c
   }
   layout.text("      </CellData>");
   layout.text("    </Piece>");
-  layout.text("  </UnstructuredGrid>");
-  layout.text("  <AppendedData encoding=\"raw\">");
-  layout.startBlocks();
   OutputFile file(path);
   layout.write(file.stream());
-  file.stream() << vtu::kEnd;
   file.commit();
 }
 

@@ -11,7 +11,7 @@ constexpr double kHistogramMin = 0.078;
 constexpr double kHistogramMax = 0.128;
 constexpr std::size_t kHistogramBins = 50;
 
-RegularityStatistics statistics(std::vector<double> values) {
+RegularityStatistics statistics(std::vector<double> values, double optimal) {
   RegularityStatistics result;
   result.histogram.assign(kHistogramBins, 0);
   result.cells = static_cast<Index>(values.size());
@@ -20,7 +20,7 @@ RegularityStatistics statistics(std::vector<double> values) {
   double squares = 0;
   for (const double value : values) {
     sum += value;
-    squares += (value - kOptimalRegularity) * (value - kOptimalRegularity);
+    squares += (value - optimal) * (value - optimal);
     const double bin = (value - kHistogramMin) / (kHistogramMax - kHistogramMin) * static_cast<double>(kHistogramBins);
     // The comparison also sends a value that is not a number to the last bin.
     const std::size_t index =
@@ -38,6 +38,16 @@ RegularityStatistics statistics(std::vector<double> values) {
   return result;
 }
 
+Regularity regularity(std::span<const double> values, std::span<const std::uint8_t> onBoundary, double optimal) {
+  std::vector<double> interior;
+  std::vector<double> boundary;
+  for (std::size_t cell = 0; cell < onBoundary.size(); ++cell) {
+    (onBoundary[cell] != 0 ? boundary : interior).push_back(values[cell]);
+  }
+  return {optimal, statistics({values.begin(), values.end()}, optimal), statistics(std::move(interior), optimal),
+          statistics(std::move(boundary), optimal)};
+}
+
 }  // namespace
 
 std::vector<double> regularities(std::span<const mesh::CellMoments> moments) {
@@ -50,18 +60,26 @@ std::vector<double> regularities(std::span<const mesh::CellMoments> moments) {
   return values;
 }
 
+std::vector<double> regularities(std::span<const mesh::PlanarCellMoments> moments) {
+  std::vector<double> values;
+  values.reserve(moments.size());
+  for (const mesh::PlanarCellMoments& cell : moments) {
+    values.push_back(cell.secondMoment / (2 * cell.area * cell.area));
+  }
+  return values;
+}
+
 Regularity regularity(const mesh::PolyhedralComplex& complex, std::span<const double> values) {
   std::vector<std::uint8_t> onBoundary(static_cast<std::size_t>(complex.cellCount), 0);
   for (Index f = 0; f < complex.faceCount(); ++f) {
     if (complex.isBoundary(f))
       onBoundary[static_cast<std::size_t>(complex.faceCells[static_cast<std::size_t>(f)][0])] = 1;
   }
-  std::vector<double> interior;
-  std::vector<double> boundary;
-  for (std::size_t cell = 0; cell < onBoundary.size(); ++cell) {
-    (onBoundary[cell] != 0 ? boundary : interior).push_back(values[cell]);
-  }
-  return {statistics({values.begin(), values.end()}), statistics(std::move(interior)), statistics(std::move(boundary))};
+  return regularity(values, onBoundary, kOptimalRegularity);
+}
+
+Regularity planarRegularity(std::span<const double> values, std::span<const std::uint8_t> onBoundary) {
+  return regularity(values, onBoundary, kOptimalPlanarRegularity);
 }
 
 }  // namespace voroform::metrics

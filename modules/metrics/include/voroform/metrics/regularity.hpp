@@ -1,35 +1,43 @@
 // Regularity of cells: the dimensionless second moment G (thesis 3.3).
 #pragma once
 
+#include <cstdint>
 #include <span>
 #include <vector>
 
 #include "voroform/mesh/moments.hpp"
+#include "voroform/mesh/planar_moments.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
 
 namespace voroform::metrics {
 
-// G of the best known cell, the truncated octahedron: 19/(192·∛2) (thesis 3.3).
+// G of the best known cells (thesis 3.3): in space the truncated octahedron's 19/(192·∛2), in the plane the hexagon's
+// 5/(36·√3).
 inline constexpr double kOptimalRegularity = 0.07854328121717653;
+inline constexpr double kOptimalPlanarRegularity = 0.08018753738744804;
 
-// G(P) = (1/3) ∫_P ‖x − x̂‖² dx / |P|^(5/3), x̂ the centroid; one value a cell.
+// G(P) = (1/m) ∫_P ‖x − x̂‖² dx / |P|^((m+2)/m), x̂ the centroid and m the dimension, 3 or 2; one value a cell.
 std::vector<double> regularities(std::span<const mesh::CellMoments> moments);
+std::vector<double> regularities(std::span<const mesh::PlanarCellMoments> moments);
 
 struct RegularityStatistics {
   Index cells = 0;
   double max = 0;
   double mean = 0;
   double median = 0;
-  double rmse = 0;               // root mean square of G − G₃
+  double rmse = 0;               // root mean square of G − G_m
   std::vector<Index> histogram;  // 50 bins over [0.078, 0.128], the last holds all above
 };
 
 struct Regularity {
+  double optimal = kOptimalRegularity;  // G_m
   RegularityStatistics all;
-  RegularityStatistics interior;  // cells without a boundary face
+  RegularityStatistics interior;  // cells without a boundary face; in the plane, without a boundary edge
   RegularityStatistics boundary;
 };
 
 Regularity regularity(const mesh::PolyhedralComplex& complex, std::span<const double> values);
+// Of the plane's cells; `onBoundary` is not 0 for boundary cells.
+Regularity planarRegularity(std::span<const double> values, std::span<const std::uint8_t> onBoundary);
 
 }  // namespace voroform::metrics
