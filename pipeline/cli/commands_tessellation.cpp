@@ -2,6 +2,7 @@
 
 #include "commands.hpp"
 #include "exit_codes.hpp"
+#include "planar.hpp"
 #include "summary.hpp"
 #include "voroform/core/error.hpp"
 
@@ -34,7 +35,7 @@ int makeResults(const pipeline::Form& form, const Settings& settings, const RunC
   const std::vector<std::string> names = pipeline::writeResults(form, tessellation, options, settings.output, context);
   if (!settings.quiet) {
     printForm(std::cout, form.record);
-    printTessellation(std::cout, tessellation.summary);
+    printOptimization(std::cout, tessellation.summary);
     printMeasurement(std::cout, tessellation.complex, tessellation.measurement, form.record.points.has_value());
     printAccuracy(std::cout, tessellation.accuracy);
     printFiles(std::cout, settings.output, names);
@@ -57,6 +58,7 @@ int runReconstruct(const Settings& settings, const CLI::App& command, const RunC
 }
 
 int runTessellate(const Settings& settings, const CLI::App& command, const RunContext& context) {
+  if (pipeline::isPlanarInput(settings.input)) return tessellatePlanar(settings, command, context);
   requireFormOptions(settings, command);
   pipeline::checkOutputFolder(settings.output);
   cvt::requireMemory(writeOptions(settings).tessellate);

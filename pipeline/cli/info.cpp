@@ -19,6 +19,7 @@
 #include "voroform/mesh/moments.hpp"
 #include "voroform/mesh/read_mesh.hpp"
 #include "voroform/mesh/validate.hpp"
+#include "voroform/pipeline/planar.hpp"
 #include "voroform/points/read.hpp"
 
 namespace voroform::cli {
@@ -118,6 +119,22 @@ Json describeMesh(const fs::path& path, const RunContext& context) {
   return json;
 }
 
+Json describeRegion(const std::string& input, const RunContext& context) {
+  const pipeline::PlanarInput read = pipeline::planarFromInput(input, context);
+  const mesh::PlanarRegion& region = read.region;
+  std::size_t holes = 0;
+  for (std::size_t r = 0; r < region.ringCount(); ++r) holes += region.isHole(r) ? 1U : 0U;
+  const Vec2 low = region.bounds().min();
+  const Vec2 high = region.bounds().max();
+  return {{"kind", "region"},
+          {"format", read.record.format},
+          {"rings", region.ringCount()},
+          {"holes", holes},
+          {"points", region.points().size()},
+          {"area", region.area()},
+          {"bounds", {{"min", {low.x(), low.y()}}, {"max", {high.x(), high.y()}}}}};
+}
+
 // Both kinds of .vtu are ours; the array that only cells have stands in the header.
 bool holdsCells(const fs::path& path) {
   std::ifstream stream = openInputFile(path);
@@ -153,7 +170,9 @@ int runInfo(const Settings& settings, const CLI::App&, const RunContext& context
   std::error_code error;
   Json json = {{"file", path.string()}, {"bytes", fs::file_size(path, error)}};
   Json content;
-  if (path.extension() != ".vtu") {
+  if (pipeline::isPlanarInput(settings.input)) {
+    content = describeRegion(settings.input, context);
+  } else if (path.extension() != ".vtu") {
     content = mesh::holdsFaces(path, context) ? describeMesh(path, context) : describePoints(path, context);
   } else if (holdsCells(path)) {
     content = describeCells(mesh::readCellsVtu(path), settings, context);

@@ -13,6 +13,7 @@
 #include "config_file.hpp"
 #include "console.hpp"
 #include "exit_codes.hpp"
+#include "planar.hpp"
 #include "signals.hpp"
 #include "voroform/core/error.hpp"
 
@@ -24,6 +25,7 @@ using Run = int (*)(const Settings&, const CLI::App&, const RunContext&);
 struct Command {
   CLI::App* app;
   Run run;
+  bool takesRegions = false;  // of the plane, as inputs
 };
 
 constexpr const char* kPointsHelp = "A point cloud (.ply .xyz .xyzn .pwn .txt .pcd .off)";
@@ -60,11 +62,12 @@ std::vector<Command> addCommands(CLI::App& app, Settings& settings) {
 
   CLI::App* tessellate =
       addCommand(app, settings, "tessellate", "Cells from a form, points or a shape, measured", "INPUT",
-                 "A form (form.vtu, form.ply), shape:NAME, or a cloud or mesh as for reconstruct");
+                 "A form (form.vtu, form.ply), shape:NAME, or a cloud or mesh as for reconstruct; or a region of the "
+                 "plane: shape2d:NAME, or a file of polygons (.wkt .xy)");
   addOutputOption(*tessellate, settings, "Folder for the results");
   addFormOptions(*tessellate, settings);
   addTessellationOptions(*tessellate, settings);
-  commands.push_back({tessellate, runTessellate});
+  commands.push_back({tessellate, runTessellate, true});
 
   CLI::App* evaluate = addCommand(app, settings, "evaluate", "Measure a results folder's cells anew", "DIR",
                                   "Folder that reconstruct or tessellate wrote");
@@ -88,9 +91,9 @@ std::vector<Command> addCommands(CLI::App& app, Settings& settings) {
   commands.push_back({reproduce, runReproduce});
 
   CLI::App* info = addCommand(app, settings, "info", "What a file is, its size, its validity", "FILE",
-                              "A point cloud, a mesh, a form (.vtu) or cells (.vtu)");
+                              "A point cloud, a mesh, a form (.vtu), cells (.vtu) or a region of the plane (.wkt .xy)");
   info->add_flag("--json", settings.json, "Print JSON");
-  commands.push_back({info, runInfo});
+  commands.push_back({info, runInfo, true});
 
   for (const Command& command : commands) addCommonOptions(*command.app, settings);
   return commands;
@@ -168,6 +171,7 @@ int runCommand(const Command& command, Settings& settings, const SignalWatch& si
         if (command.app->get_option_no_throw("--output") != nullptr && settings.output.empty()) {
           throw UsageError("--output is required; see voroform " + command.app->get_name() + " --help");
         }
+        if (!command.takesRegions) refuseRegions(settings, command.app->get_name());
         console.emplace(settings);
         const RunContext context = console->context(signals.cancelled(), effectiveThreads(settings));
         const CapturedStream libraries(std::cerr, [&context](std::string_view line) { context.debug(line); });

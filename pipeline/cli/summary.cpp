@@ -66,7 +66,7 @@ void printForm(std::ostream& out, const pipeline::FormRecord& record) {
   }
 }
 
-void printTessellation(std::ostream& out, const cvt::TessellateSummary& summary) {
+void printOptimization(std::ostream& out, const cvt::OptimizeSummary& summary) {
   out << "optimization: " << plural(static_cast<std::uint64_t>(summary.iterationsDone), "iteration") << ", "
       << plural(static_cast<std::uint64_t>(summary.evaluations), "evaluation") << ", ended by "
       << cvt::toString(summary.stop) << "; energy " << percent(summary.relativeError) << " above its optimum\n";
@@ -89,7 +89,25 @@ void printMeasurement(std::ostream& out, const mesh::PolyhedralComplex& complex,
   if (hasCloud) out << ", " << percent(fidelity.unsupportedShare) << " farther than four spacings from any point";
   out << '\n';
   out << "regularity: mean " << number(measurement.regularity.all.mean) << ", largest "
-      << number(measurement.regularity.all.max) << ", optimum " << number(metrics::kOptimalRegularity) << '\n';
+      << number(measurement.regularity.all.max) << ", optimum " << number(measurement.regularity.optimal) << '\n';
+}
+
+void printPlanar(std::ostream& out, const pipeline::PlanarInput& input, const pipeline::PlanarResult& result) {
+  const mesh::PlanarRegion& region = input.region;
+  const pipeline::PlanarMeasurement& measurement = result.measurement;
+  const mesh::PlanarCertificate& certificate = measurement.certificate;
+  out << "region: " << input.record.name << ", " << plural(region.ringCount(), "ring") << " of "
+      << plural(region.points().size(), "point") << ", area " << number(region.area()) << '\n';
+  printOptimization(out, result.summary);
+  out << "cells: " << result.tessellation.cellCount() << ", " << measurement.regularity.boundary.cells
+      << " of them at the boundary\n";
+  out << "valid: " << (certificate.valid ? "yes" : "no") << "; areas add up to the region's but for "
+      << number(certificate.areaError) << " of it, " << certificate.pointViolations << " of "
+      << certificate.pointSamples << " points in doubt\n";
+  for (const std::string& problem : certificate.problems) out << "  " << problem << '\n';
+  const metrics::RegularityStatistics& all = measurement.regularity.all;
+  out << "regularity: mean " << number(all.mean) << ", median " << number(all.median) << ", largest " << number(all.max)
+      << ", optimum " << number(measurement.regularity.optimal) << '\n';
 }
 
 void printAccuracy(std::ostream& out, const std::optional<metrics::Accuracy>& accuracy) {

@@ -15,20 +15,13 @@ Json optionsJson(const FormRecord& form, const WriteOptions& options) {
   Json formats = Json::array();
   for (const ExtraFormat format : options.formats) formats.push_back(toString(format));
   const cvt::TessellateOptions& cvt = options.tessellate;
-  return {{"method", toString(CvtMethod{cvt.cap, cvt.fit})},
-          {"sites", cvt.sites},
-          {"initialization", toString(cvt.initialization)},
-          {"subdivisions", cvt.subdivisions},
-          {"iterations", cvt.iterations},
-          {"optimizer", toString(cvt.optimizer)},
-          {"perturbations", cvt.perturbations},
-          {"convergence", cvt.convergence},
-          {"gradient_tolerance", cvt.gradientTolerance},
-          {"root_finder", toString(cvt.rootFinder)},
-          {"relative_error", cvt.relativeError},
-          {"envelope", toString(form.envelope)},
-          {"margin", form.margin},
-          {"formats", std::move(formats)}};
+  Json json = {{"method", toString(CvtMethod{cvt.cap, cvt.fit})}};
+  json.update(siteOptionsJson(cvt));
+  json.update(Json{{"root_finder", toString(cvt.rootFinder)},
+                   {"envelope", toString(form.envelope)},
+                   {"margin", form.margin},
+                   {"formats", std::move(formats)}});
+  return json;
 }
 
 Json directedJson(const metrics::DirectedAccuracy& directed) {
@@ -48,7 +41,34 @@ Json relativeJson(const metrics::Accuracy& accuracy, double unit) {
 
 }  // namespace
 
-Json energyJson(const cvt::TessellateSummary& summary) {
+Json siteOptionsJson(const cvt::SiteOptions& options) {
+  return {{"sites", options.sites},
+          {"initialization", toString(options.initialization)},
+          {"subdivisions", options.subdivisions},
+          {"iterations", options.iterations},
+          {"optimizer", toString(options.optimizer)},
+          {"perturbations", options.perturbations},
+          {"convergence", options.convergence},
+          {"gradient_tolerance", options.gradientTolerance},
+          {"relative_error", options.relativeError}};
+}
+
+Json hierarchyJson(const std::vector<cvt::HierarchyLevel>& levels) {
+  Json json = Json::array();
+  for (const cvt::HierarchyLevel& level : levels) {
+    json.push_back({{"sites", level.sites},
+                    {"subdivided", level.subdivided},
+                    {"inserted", level.inserted},
+                    {"iterations", level.optimization.iterationsDone},
+                    {"evaluations", level.optimization.evaluations},
+                    {"stop", cvt::toString(level.optimization.stop)},
+                    {"energy", level.optimization.energy},
+                    {"relative_error", level.optimization.relativeError}});
+  }
+  return json;
+}
+
+Json energyJson(const cvt::OptimizeSummary& summary) {
   Json steps = Json::array();
   for (const cvt::IterationRecord& record : summary.iterations) {
     steps.push_back({{"value", record.energy}, {"rms_move", record.rmsMove}, {"evaluations", record.evaluations}});
@@ -149,7 +169,7 @@ void setMeasuredFidelity(Json& fidelity, const metrics::Fidelity& measured, bool
 }
 
 Json regularityJson(const metrics::Regularity& regularity) {
-  return {{"optimal", metrics::kOptimalRegularity},
+  return {{"optimal", regularity.optimal},
           {"all", statisticsJson(regularity.all)},
           {"interior", statisticsJson(regularity.interior)},
           {"boundary", statisticsJson(regularity.boundary)}};
@@ -181,6 +201,7 @@ Json metricsJson(const Form& form, const Tessellation& tessellation, const Write
   json["regularity"] = regularityJson(measurement.regularity);
   json["accuracy"] = accuracyJson(tessellation.accuracy);
   json["energy"] = energyJson(summary);
+  if (!summary.levels.empty()) json["hierarchy"] = hierarchyJson(summary.levels);
   json["seconds"] = {
       {"points", form.secondsPoints},
       {"implicit", form.secondsImplicit},

@@ -8,6 +8,7 @@
 #include <string>
 #include <type_traits>
 #include <utility>
+#include <vector>
 
 #include <nlohmann/json.hpp>
 
@@ -40,7 +41,10 @@ Json validityJson(const mesh::Certificate& certificate);
 // The part of fidelity that is measured on the complex; the rest is what only the making run knew.
 void setMeasuredFidelity(Json& fidelity, const metrics::Fidelity& measured, bool hasCloud);
 Json regularityJson(const metrics::Regularity& regularity);
-Json energyJson(const cvt::TessellateSummary& summary);
+Json siteOptionsJson(const cvt::SiteOptions& options);
+Json energyJson(const cvt::OptimizeSummary& summary);
+// The coarser levels of hierarchical sites, but for their seconds.
+Json hierarchyJson(const std::vector<cvt::HierarchyLevel>& levels);
 Json clippingJson(const cvt::TessellateSummary& summary);
 // null if there is none.
 Json accuracyJson(const std::optional<metrics::Accuracy>& accuracy);
