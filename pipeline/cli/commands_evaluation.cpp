@@ -94,7 +94,8 @@ int runReproduce(const Settings& settings, const CLI::App&, const RunContext& co
   options.table = settings.table == "5.7" ? "figure-5.7" : settings.table;
   options.data = settings.data;
   options.dataSets = split(settings.dataSets);
-  options.iterations = settings.iterations;
+  options.iterations = settings.mostIterations;
+  options.seeds = settings.seeds;
   options.delaunayTimeLimit = settings.delaunayTimeLimit;
   options.seed = settings.seed;
   options.ranking = settings.ranking;

@@ -296,7 +296,10 @@ void addRankOptions(CLI::App& command, Settings& settings) {
 }
 
 void addReproduceOptions(CLI::App& command, Settings& settings) {
-  command.add_option("TABLE", settings.table, "3.1, 5.1, 5.2, 5.3, 5.4 or figure-5.7 (5.7)")->required();
+  command
+      .add_option("TABLE", settings.table,
+                  "3.1, 3.2, 4.1 to 4.7, 5.1 to 5.4, figure-3.8, figure-3.9, figure-4.10 or figure-5.7 (5.7)")
+      ->required();
   addOutputOption(command, settings, "Folder for the results");
   command.add_option("--data", settings.data, "Folder where datasets-scripts/ put the scans and meshes")
       ->type_name("FOLDER")
@@ -305,8 +308,13 @@ void addReproduceOptions(CLI::App& command, Settings& settings) {
       .add_option("--data-sets", settings.dataSets,
                   "Rows of the table to reproduce, by the thesis's names, separated by commas; all if not given")
       ->type_name("LIST");
-  command.add_option("--iterations", settings.iterations, "Iterations of the CVTs' optimizer")
-      ->check(inRange(0, 1'000'000))
+  command
+      .add_option("--iterations", settings.mostIterations,
+                  "Iterations of the CVTs' optimizer; if not given 10, and in chapters 3 and 4 at most 1000")
+      ->check(inRange(0, 1'000'000));
+  command
+      .add_option("--seeds", settings.seeds, "Of chapters 3 and 4: seeds from --seed on, of which the median is taken")
+      ->check(inRange(1, 1000))
       ->capture_default_str();
   command
       .add_option("--delaunay-time-limit", settings.delaunayTimeLimit,

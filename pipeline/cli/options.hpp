@@ -70,6 +70,8 @@ struct Settings {
   std::string table;
   std::string dataSets;
   std::string ranking;
+  std::optional<int> mostIterations;  // of reproduce: each table has its own default
+  int seeds = 10;
 
   bool json = false;
 };

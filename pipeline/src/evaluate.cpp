@@ -62,6 +62,9 @@ Evaluation evaluate(const fs::path& folder, const RunContext& context) {
     throw InputError(metricsPath.string() + ": expected the schema \"" + kMetricsSchema + "\", found \"" + schema +
                      "\"");
   }
+  if (json.contains("dimension") && json["dimension"] == 2) {
+    throw UsageError(folder.string() + ": holds cells of a region of the plane; evaluate measures those of solids");
+  }
   const auto seed = value<std::uint64_t>(json, "seed", metricsPath);
   const auto sites = value<Index>(member(json, "counts", metricsPath), "sites", metricsPath);
   auto known = value<std::vector<std::string>>(json, "warnings", metricsPath);

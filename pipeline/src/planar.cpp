@@ -21,7 +21,7 @@ constexpr std::string_view kShapePrefix = "shape2d:";
 constexpr const char* kKind = "region";
 
 // Measured peak of whole runs, certificate and writers included, at a million sites of the square.
-constexpr std::uint64_t kBytesPerSite = 1500;
+constexpr std::uint64_t kBytesPerSite = 1200;
 
 void requireMemory(const PlanarOptions& options) {
   const std::uint64_t limit = options.memoryLimit != 0 ? options.memoryLimit : usableMemory();

@@ -6,6 +6,7 @@
 
 #include "embedded_files.hpp"
 #include "rank_records.hpp"
+#include "reproduce_cvt.hpp"
 #include "voroform/baselines/cube_grid.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/input_file.hpp"
@@ -126,7 +127,7 @@ CompareOptions compareOptions(const ReproduceOptions& options, const std::vector
                                        [&](const PublishedFigure& figure) { return figure.method == method; });
     if (published) compare.methods.push_back(method);
   }
-  compare.iterations = options.iterations;
+  compare.iterations = options.iterations.value_or(compare.iterations);
   compare.delaunayTimeLimit = options.delaunayTimeLimit;
   compare.equalTriangles = false;
   compare.dualTetrahedra = options.table == "5.2" || options.table == "5.3";
@@ -236,7 +237,7 @@ Rankings rankingFor(Reproduction& result, const fs::path& folder, const RunConte
   RankOptions rankOptions;
   rankOptions.experiment =
       parseExperiment(embeddedFile("experiments/meshes.toml"), "eval/experiments/meshes.toml", options.data);
-  rankOptions.experiment.iterations = options.iterations;
+  rankOptions.experiment.iterations = options.iterations.value_or(rankOptions.experiment.iterations);
   rankOptions.experiment.delaunayTimeLimit = options.delaunayTimeLimit;
   rankOptions.compare.threads = context.threads;
   for (const ExperimentInput& input : rankOptions.experiment.inputs) {
@@ -294,7 +295,10 @@ std::vector<std::string> validate(const ReproduceOptions& options) {
     for (const std::string& name : known) list += (list.empty() ? "" : ", ") + name;
     problems.push_back("data-sets: table " + options.table + " has no \"" + dataSet + "\"; it has " + list);
   }
-  if (options.iterations < 0) problems.push_back("iterations: " + std::to_string(options.iterations) + " is negative");
+  if (options.iterations.value_or(0) < 0) {
+    problems.push_back("iterations: " + std::to_string(*options.iterations) + " is negative");
+  }
+  if (options.seeds < 1) problems.push_back("seeds: " + std::to_string(options.seeds) + ", but must be at least 1");
   if (!(options.delaunayTimeLimit >= 0)) problems.emplace_back("delaunay-time-limit: expected 0 or more seconds");
   if (!options.ranking.empty() && options.table != "figure-5.7") {
     problems.push_back("ranking: has no meaning for table " + options.table);
@@ -340,6 +344,8 @@ Reproduction reproduce(const ReproduceOptions& options, const fs::path& folder, 
     reproduceBodies(published, result);
   } else if (options.table == "figure-5.7") {
     reproduceRanking(published, result, folder, context);
+  } else if (isCvtTable(options.table)) {
+    reproduceCvts(published, result, context);
   } else {
     reproduceComparisons(published, result, context);
   }

@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "rank_records.hpp"
+#include "reproduce_cvt.hpp"
 #include "text_files.hpp"
 #include "voroform/pipeline/artifact_store.hpp"
 #include "voroform/pipeline/reproduce.hpp"
@@ -25,6 +26,8 @@ Json figureJson(const ReproducedFigure& figure) {
                {"published", published.value},
                {"ours", number(figure.ours)},
                {"difference", number(difference(figure))},
+               {"lowest", number(figure.lowest)},
+               {"highest", number(figure.highest)},
                {"published_ratio_to_mc", number(figure.publishedRatio)},
                {"our_ratio_to_mc", number(figure.ourRatio)}};
   if (!figure.failure.empty()) json["failure"] = figure.failure;
@@ -47,7 +50,8 @@ Json reproductionJson(const Reproduction& reproduction) {
           {"table", reproduction.options.table},
           {"versions", versionsJson()},
           {"seed", reproduction.options.seed},
-          {"iterations", reproduction.options.iterations},
+          {"iterations", reproduction.options.iterations ? Json(*reproduction.options.iterations) : Json(nullptr)},
+          {"seeds", reproduction.options.seeds},
           {"delaunay_time_limit", reproduction.options.delaunayTimeLimit},
           {"stand_ins", std::move(standIns)},
           {"figures", std::move(figures)},
@@ -59,14 +63,15 @@ std::string csvNumber(double value) { return std::isfinite(value) ? shortNumber(
 
 std::string reproductionCsv(const Reproduction& reproduction) {
   std::string csv =
-      "table,page,data_set,method,criterion,published,ours,difference,published_ratio_to_mc,our_ratio_to_mc,failure,"
-      "note\n";
+      "table,page,data_set,sites,method,criterion,published,ours,difference,lowest,highest,published_ratio_to_mc,"
+      "our_ratio_to_mc,failure,note\n";
   for (const ReproducedFigure& figure : reproduction.figures) {
     const PublishedFigure& published = figure.published;
     csv += published.table + ',' + std::to_string(published.page) + ',' + quoted(published.dataSet) + ',' +
-           published.method + ',' + quoted(published.criterion);
-    for (const double value :
-         {published.value, figure.ours, difference(figure), figure.publishedRatio, figure.ourRatio}) {
+           (published.sites ? std::to_string(*published.sites) : std::string()) + ',' + published.method + ',' +
+           quoted(published.criterion);
+    for (const double value : {published.value, figure.ours, difference(figure), figure.lowest, figure.highest,
+                               figure.publishedRatio, figure.ourRatio}) {
       csv += ',' + csvNumber(value);
     }
     csv += ',' + quoted(figure.failure) + ',' + quoted(published.note) + '\n';
@@ -90,16 +95,20 @@ std::string reproductionMarkdown(const Reproduction& reproduction) {
   }
   if (!reproduction.standIns.empty()) text += '\n';
   for (const std::string& remark : reproduction.remarks) text += remark + "\n\n";
-  text +=
-      "| data | method | criterion | published | ours | difference | published/mc | ours/mc "
-      "|\n|---|---|---|---|---|---|---|---|\n";
+  const bool isCvt = isCvtTable(table);
+  text += std::string("| data | ") + (isCvt ? "sites | " : "") +
+          "method | criterion | published | ours | difference | " +
+          (isCvt ? "lowest | highest |\n|---" : "published/mc | ours/mc |\n") + "|---|---|---|---|---|---|---|---|\n";
   const int digits = table == "3.1" ? 7 : 4;
   for (const ReproducedFigure& figure : reproduction.figures) {
     const PublishedFigure& published = figure.published;
     const std::string ours = figure.failure.empty() ? shortNumber(figure.ours, digits) : figure.failure;
-    text += "| " + published.dataSet + " | " + published.method + " | " + published.criterion + " | " +
-            shortNumber(published.value, digits) + " | " + ours + " | " + shortNumber(difference(figure), 2) + " | " +
-            shortNumber(figure.publishedRatio) + " | " + shortNumber(figure.ourRatio) + " |\n";
+    text += "| " + published.dataSet + " | " +
+            (isCvt && published.sites ? std::to_string(*published.sites) + " | " : std::string()) + published.method +
+            " | " + published.criterion + " | " + shortNumber(published.value, digits) + " | " + ours + " | " +
+            shortNumber(difference(figure), 2) + " | " +
+            shortNumber(isCvt ? figure.lowest : figure.publishedRatio, digits) + " | " +
+            shortNumber(isCvt ? figure.highest : figure.ourRatio, digits) + " |\n";
   }
   return text;
 }
@@ -108,6 +117,10 @@ std::vector<std::string> writeReproduction(const Reproduction& reproduction, con
   ArtifactStore store(folder);
   putText(store, "reproduce.csv", reproductionCsv(reproduction));
   putText(store, "reproduce.md", reproductionMarkdown(reproduction));
+  if (!reproduction.curves.empty()) {
+    putText(store, "curves.csv", curvesCsv(reproduction.curves));
+    putText(store, "curves.svg", curvesSvg(reproduction.curves));
+  }
   store.put("reproduce.json",
             [&](const std::filesystem::path& path) { writeJson(path, reproductionJson(reproduction)); });
   store.commit();

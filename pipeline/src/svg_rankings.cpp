@@ -2,11 +2,10 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 #include <numeric>
 
 #include "rank_records.hpp"
-#include "voroform/core/xml_text.hpp"
+#include "svg_drawing.hpp"
 
 namespace voroform::pipeline {
 
@@ -25,47 +24,6 @@ constexpr std::size_t kPanelsPerRow = 4;
 constexpr std::array<const char*, 9> kColors = {"#00441b", "#1b7837", "#5aae61", "#a6dba0", "#d9f0d3",
                                                 "#fee0b6", "#fdb863", "#e08214", "#b35806"};
 
-// Control characters are no XML: each becomes a blank.
-std::string escaped(std::string text) {
-  std::replace_if(
-      text.begin(), text.end(), [](unsigned char c) { return c < 0x20; }, ' ');
-  return xmlEscaped(text);
-}
-
-std::string coordinate(double value) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.2f", value);
-  return text;
-}
-
-class Drawing {
- public:
-  void rectangle(double x, double y, double width, double height, const std::string& fill, const std::string& note) {
-    body_ += "<rect x=\"" + coordinate(x) + "\" y=\"" + coordinate(y) + "\" width=\"" + coordinate(width) +
-             "\" height=\"" + coordinate(height) + "\" fill=\"" + fill + "\"";
-    body_ += note.empty() ? "/>\n" : "><title>" + escaped(note) + "</title></rect>\n";
-  }
-  void line(double x1, double y1, double x2, double y2, double width = 1) {
-    body_ += "<line x1=\"" + coordinate(x1) + "\" y1=\"" + coordinate(y1) + "\" x2=\"" + coordinate(x2) + "\" y2=\"" +
-             coordinate(y2) + "\" stroke=\"#222222\" stroke-width=\"" + coordinate(width) + "\"/>\n";
-  }
-  void text(double x, double y, const std::string& content, double size = 11, const std::string& anchor = "middle",
-            const std::string& fill = "#111111") {
-    body_ += "<text x=\"" + coordinate(x) + "\" y=\"" + coordinate(y) + "\" font-size=\"" + coordinate(size) +
-             "\" text-anchor=\"" + anchor + "\" fill=\"" + fill + "\">" + escaped(content) + "</text>\n";
-  }
-  std::string document(double width, double height) const {
-    return "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"" +
-           coordinate(width) + "\" height=\"" + coordinate(height) + "\" viewBox=\"0 0 " + coordinate(width) + " " +
-           coordinate(height) +
-           "\" font-family=\"sans-serif\">\n<rect width=\"100%\" height=\"100%\" fill=\"#ffffff\"/>\n" + body_ +
-           "</svg>\n";
-  }
-
- private:
-  std::string body_;
-};
-
 // Of all places that there are in the experiment, so that one legend serves all tables.
 const char* colorOf(std::size_t place, std::size_t places) {
   if (places <= 1) return kColors.front();
@@ -73,7 +31,7 @@ const char* colorOf(std::size_t place, std::size_t places) {
 }
 
 // Stacked bars: how often each method has each place, the first at the bottom.
-void drawBars(Drawing& drawing, const CriterionRanking& ranking, std::size_t places, double left, double top) {
+void drawBars(SvgDrawing& drawing, const CriterionRanking& ranking, std::size_t places, double left, double top) {
   const std::size_t methods = ranking.methods.size();
   const double slot = (kPanelWidth - 2 * kMargin) / static_cast<double>(methods);
   const auto inputs = static_cast<double>(ranking.summary.inputs);
@@ -101,7 +59,7 @@ void drawBars(Drawing& drawing, const CriterionRanking& ranking, std::size_t pla
 }
 
 // Methods on the axis of mean ranks; a thick bar joins those that are not significantly different (Demšar 2006).
-void drawCriticalDifference(Drawing& drawing, const CriterionRanking& ranking, double left, double top) {
+void drawCriticalDifference(SvgDrawing& drawing, const CriterionRanking& ranking, double left, double top) {
   const std::size_t methods = ranking.methods.size();
   const std::vector<double>& ranks = ranking.summary.meanRanks;
   const double start = left + 3 * kMargin;
@@ -151,7 +109,7 @@ std::string captionOf(const RankingTable& table) {
          std::to_string(table.inputs.size()) + (table.inputs.size() == 1 ? " input" : " inputs");
 }
 
-void drawLegend(Drawing& drawing, std::size_t places, double top) {
+void drawLegend(SvgDrawing& drawing, std::size_t places, double top) {
   double x = kMargin;
   drawing.text(x, top, "place:", 11, "start");
   x += 40;
@@ -169,7 +127,7 @@ void drawLegend(Drawing& drawing, std::size_t places, double top) {
 }  // namespace
 
 std::string rankingsSvg(const Rankings& rankings) {
-  Drawing drawing;
+  SvgDrawing drawing;
   const double width = kPanelsPerRow * kPanelWidth + 2 * kMargin;
   drawing.text(kMargin, 26, "Rankings: " + rankings.experiment.name, 18, "start");
   const std::size_t places = rankings.experiment.methods.size();

@@ -26,6 +26,14 @@ std::vector<Vec<M>> initialSites(const Domain<M>& domain, std::span<const Vec<M>
   switch (options.initialization) {
     case Initialization::random:
       return randomSites(domain, options.sites, options.seed, context);
+    case Initialization::hammersley:
+      return hammersleySites(domain, options.sites, options.seed, context);
+    case Initialization::lattice:
+      return latticeSites(domain, options.sites, options.seed, context);
+    case Initialization::farthestPoint:
+      return farthestPointSites(domain, options.sites, options.seed, context);
+    case Initialization::greedyEdgeCollapse:
+      return greedyEdgeCollapseSites(domain, options.sites, options.seed, context);
     case Initialization::given:
       return checkedSites(domain, given);
     default:

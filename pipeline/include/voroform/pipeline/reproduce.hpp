@@ -10,6 +10,7 @@
 
 #include "voroform/core/run_context.hpp"
 #include "voroform/core/types.hpp"
+#include "voroform/cvt/optimize.hpp"
 #include "voroform/implicit/implicit_function.hpp"
 
 namespace voroform::pipeline {
@@ -26,7 +27,7 @@ struct PublishedFigure {
   std::string note;  // what had to be repaired
 };
 
-// The tables that can be reproduced: 3.1, 5.1, 5.2, 5.3, 5.4, figure-5.7.
+// The tables that can be reproduced: 3.1, 3.2, 4.1 to 4.7, 5.1 to 5.4 and the figures 3.8, 3.9, 4.10 and 5.7.
 const std::vector<std::string>& reproducibleTables();
 // All figures of a table, in print order. Throws UsageError for an unknown one.
 std::vector<PublishedFigure> publishedFigures(const std::string& table);
@@ -35,18 +36,26 @@ struct ReproduceOptions {
   std::string table;
   std::filesystem::path data = "data";  // where datasets-scripts/ put the scans and meshes
   std::vector<std::string> dataSets;    // the thesis's names; empty: all of the table
-  int iterations = 10;
+  // At most; 10 if not given, in the tables of chapters 3 and 4 kCvtIterations.
+  std::optional<int> iterations;
+  // Of the tables of chapters 3 and 4: seeds from the first on, of which the median is taken where the initial sites are
+  // random (thesis, section 4.1.4).
+  int seeds = 10;
   double delaunayTimeLimit = 600;  // seconds; 0: none
   std::uint64_t seed = 0;
   // Figure 5.7 only: a folder that rank wrote; empty: the experiment eval/experiments/meshes.toml is run.
   std::filesystem::path ranking;
 };
 std::vector<std::string> validate(const ReproduceOptions& options);
+inline constexpr int kCvtIterations = 1000;
 
 struct ReproducedFigure {
   PublishedFigure published;
   double ours = std::numeric_limits<double>::quiet_NaN();  // in the published figure's units
   std::string failure;                                     // why there is none
+  // Of the seeds whose median ours is; NaN where there is one.
+  double lowest = std::numeric_limits<double>::quiet_NaN();
+  double highest = std::numeric_limits<double>::quiet_NaN();
   // Relative to Marching Cubes on the same data; NaN where there is nothing to compare with.
   double publishedRatio = std::numeric_limits<double>::quiet_NaN();
   double ourRatio = std::numeric_limits<double>::quiet_NaN();
@@ -61,9 +70,18 @@ struct StandIn {
   Index sites = 0;
 };
 
+// How energy and regularity fell in one run.
+struct Curve {
+  std::string name;
+  double optimalRegularity = 0;  // G_m
+  double optimalEnergy = 0;      // E_m
+  std::vector<cvt::IterationRecord> iterations;
+};
+
 struct Reproduction {
   ReproduceOptions options;
   std::vector<StandIn> standIns;
+  std::vector<Curve> curves;  // of the first seed
   std::vector<ReproducedFigure> figures;
   std::vector<std::string> remarks;
   double seconds = 0;
@@ -73,7 +91,7 @@ struct Reproduction {
 // that is missing), MethodError, EnvironmentError, Cancelled.
 Reproduction reproduce(const ReproduceOptions& options, const std::filesystem::path& folder, const RunContext& context);
 
-// Writes reproduce.json, .csv and .md: all of them or none. Returns their names.
+// Writes reproduce.json, .csv and .md, and the curves if there are any (curves.csv, curves.svg): all of them or none. Returns their names.
 std::vector<std::string> writeReproduction(const Reproduction& reproduction, const std::filesystem::path& folder);
 std::string reproductionMarkdown(const Reproduction& reproduction);
 
