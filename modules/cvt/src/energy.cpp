@@ -1,7 +1,10 @@
 #include "voroform/cvt/energy.hpp"
 
+#include <utility>
+
 #include "gather.hpp"
 #include "voroform/voronoi/diagram.hpp"
+#include "voroform/voronoi/weighted_moments.hpp"
 
 namespace voroform::cvt {
 
@@ -19,15 +22,23 @@ Box3 siteDomain(const implicit::ImplicitFunction& f) {
 }
 
 Evaluation<3> evaluateEnergy(std::span<const Vec3> sites, const implicit::ImplicitFunction& f,
-                             const voronoi::ClipOptions& options, const RunContext& context) {
+                             const voronoi::ClipOptions& options, const RunContext& context,
+                             const Density<3>* density) {
   Evaluation<3> result;
   voronoi::ClipOptions flat = options;
   flat.cap = voronoi::CapKind::flat;
   const voronoi::Diagram diagram = voronoi::buildDiagram(sites, siteDomain(f), context);
   const Stopwatch watch;
   const voronoi::ClippedDiagram clipped = voronoi::clip(diagram, f, flat, context);
-  result.moments = voronoi::siteMoments(diagram, clipped, context);
-  gather(sites, result, context);
+  voronoi::WeightedMoments<3> weighted;
+  if (density != nullptr) {
+    const auto values = [&](std::span<const Vec3> points, std::span<double> out) { density->values(points, out); };
+    weighted = voronoi::weightedMoments(diagram, clipped, values, context);
+  } else {
+    weighted.moments = voronoi::siteMoments(diagram, clipped, context);
+  }
+  result.moments = std::move(weighted.moments);
+  gather(sites, weighted.volumes, result, context);
   result.secondsDelaunay = diagram.secondsDelaunay;
   result.secondsAfterDelaunay = diagram.secondsFlattening + watch.seconds();
   return result;

@@ -40,17 +40,18 @@ double root(double x) {
   return M == 2 ? std::sqrt(x) : std::cbrt(x);
 }
 
-// The dimensionless second moment G of a cell about its centroid (thesis, equation 3.4).
+// The dimensionless second moment G of a cell about its centroid (thesis, equation 3.4), free of the units of ρ.
 template <int M>
-double regularity(const voronoi::Moments<M>& cell) {
-  const double size = root<M>(cell.mass);
+double regularity(const voronoi::Moments<M>& cell, double size) {
   return (cell.second - cell.first.squaredNorm() / cell.mass) / (M * cell.mass * size * size);
 }
 
 }  // namespace
 
 template <int M>
-void gather(std::span<const Vec<M>> sites, Evaluation<M>& evaluation, const RunContext& context) {
+void gather(std::span<const Vec<M>> sites, std::span<const double> volumes, Evaluation<M>& evaluation,
+            const RunContext& context) {
+  const bool weighted = !volumes.empty();
   std::vector<voronoi::Moments<M>>& moments = evaluation.moments;
   double volume = 0;
   for (const auto& cell : moments) volume += std::max(0.0, cell.mass);
@@ -62,16 +63,24 @@ void gather(std::span<const Vec<M>> sites, Evaluation<M>& evaluation, const RunC
         for (std::size_t i = begin; i < end; ++i) {
           voronoi::Moments<M>& cell = moments[i];
           sum.squaredSites += sites[i].squaredNorm();
-          if (!(cell.mass > least)) {
+          const double cellVolume = weighted ? volumes[i] : cell.mass;
+          if (!(cell.mass > least && cellVolume > 0)) {
             cell = {};
             ++sum.empty;
             continue;
           }
           sum.energy += cell.second;
-          sum.volume += cell.mass;
-          sum.squaredMoves += cell.first.squaredNorm() / (cell.mass * cell.mass);
+          const double size = root<M>(cellVolume);
+          const double squaredMove = cell.first.squaredNorm() / (cell.mass * cell.mass);
+          if (weighted) {
+            sum.volume += cellVolume * std::pow(cell.mass / cellVolume, M / (M + 2.0));
+            sum.squaredMoves += squaredMove / (size * size);
+          } else {
+            sum.volume += cell.mass;
+            sum.squaredMoves += squaredMove;
+          }
           sum.squaredGradient += 4 * cell.first.squaredNorm();
-          sum.regularity += regularity(cell);
+          sum.regularity += regularity(cell, size);
         }
         return sum;
       },
@@ -81,7 +90,8 @@ void gather(std::span<const Vec<M>> sites, Evaluation<M>& evaluation, const RunC
   evaluation.emptyCells = sums.empty;
   const double filled = n - static_cast<double>(sums.empty);
   if (filled > 0) {
-    evaluation.rmsMove = std::sqrt(sums.squaredMoves / filled) / root<M>(sums.volume / n);
+    evaluation.rmsMove = std::sqrt(sums.squaredMoves / filled);
+    if (!weighted) evaluation.rmsMove /= root<M>(sums.volume / n);
     evaluation.meanRegularity = sums.regularity / filled;
   }
   if (sums.squaredSites > 0) evaluation.relativeGradient = std::sqrt(sums.squaredGradient / sums.squaredSites);
@@ -99,8 +109,8 @@ double optimalEnergy(Index sites, double volume) {
   return M * static_cast<double>(sites) * cell * (size * size) * optimalRegularity<M>();
 }
 
-template void gather<2>(std::span<const Vec2>, Evaluation<2>&, const RunContext&);
-template void gather<3>(std::span<const Vec3>, Evaluation<3>&, const RunContext&);
+template void gather<2>(std::span<const Vec2>, std::span<const double>, Evaluation<2>&, const RunContext&);
+template void gather<3>(std::span<const Vec3>, std::span<const double>, Evaluation<3>&, const RunContext&);
 template double optimalRegularity<2>();
 template double optimalRegularity<3>();
 template double optimalEnergy<2>(Index, double);

@@ -37,7 +37,7 @@ Evaluation<3> ImplicitDomain::evaluate(std::span<const Vec3> sites, const RunCon
   voronoi::ClipOptions options;
   options.rootFinder = rootFinder_;
   options.rootTolerance = kOptimizationRootTolerance;
-  return evaluateEnergy(sites, f_, options, context);
+  return evaluateEnergy(sites, f_, options, context, density_.get());
 }
 
 SiteGraph ImplicitDomain::graph(std::span<const Vec3> sites, const RunContext& context) const {

@@ -18,11 +18,16 @@ constexpr int kRank = 7;
 
 // The energy as Ceres sees it: in units of the mean cell, on y = √2·(x − center)/h, so that E/(m̄h²) has the gradient
 // √2·(mᵢ/m̄)(xᵢ − cᵢ)/h and a unit step against it is Lloyd's. Free of the input's units.
+//
+// With a density cells of size sᵢ·h have the mass sᵢ⁻²·m̄, where h and m̄ are of the smallest cells and sᵢ^(−M) is the
+// relative density of sites: y = √2·(x − center)/(sᵢh) makes the unit step Lloyd's again, for cells of all sizes.
 template <int M>
 class ScaledEnergy final : public ceres::FirstOrderFunction {
  public:
-  ScaledEnergy(Progress<M>& progress, const Vec<M>& center, double spacing, double mass, std::size_t count)
-      : progress_(progress), center_(center), spacing_(spacing), mass_(mass), count_(count) {}
+  ScaledEnergy(Progress<M>& progress, const Vec<M>& center, double spacing, double mass, std::span<const Vec<M>> sites)
+      : progress_(progress), center_(center), spacing_(spacing), mass_(mass), count_(sites.size()) {
+    for (const Vec<M>& site : sites) weights_.push_back(std::pow(progress.domain().siteDensity(site), 1.0 / M));
+  }
 
   int NumParameters() const override { return static_cast<int>(M * count_); }
 
@@ -38,7 +43,7 @@ class ScaledEnergy final : public ceres::FirstOrderFunction {
           const bool filled = site.mass > 0;
           for (Index axis = 0; axis < M; ++axis) {
             gradient[M * i + static_cast<std::size_t>(axis)] =
-                filled ? -std::sqrt(2.0) * site.first[axis] / (mass_ * spacing_) : 0.0;
+                filled ? -std::sqrt(2.0) * site.first[axis] / (mass_ * spacing_ * weights_[i]) : 0.0;
           }
         }
       }
@@ -54,7 +59,9 @@ class ScaledEnergy final : public ceres::FirstOrderFunction {
   std::vector<Vec<M>> toSites(const double* parameters) const {
     std::vector<Vec<M>> sites(count_);
     const double scale = spacing_ / std::sqrt(2.0);
-    for (std::size_t i = 0; i < count_; ++i) sites[i] = center_ + scale * Eigen::Map<const Vec<M>>(parameters + M * i);
+    for (std::size_t i = 0; i < count_; ++i) {
+      sites[i] = center_ + scale / weights_[i] * Eigen::Map<const Vec<M>>(parameters + M * i);
+    }
     return sites;
   }
 
@@ -62,7 +69,7 @@ class ScaledEnergy final : public ceres::FirstOrderFunction {
     std::vector<double> parameters(M * count_);
     const double scale = std::sqrt(2.0) / spacing_;
     for (std::size_t i = 0; i < count_; ++i) {
-      Eigen::Map<Vec<M>>(parameters.data() + M * i) = scale * (sites[i] - center_);
+      Eigen::Map<Vec<M>>(parameters.data() + M * i) = scale * weights_[i] * (sites[i] - center_);
     }
     return parameters;
   }
@@ -97,6 +104,7 @@ class ScaledEnergy final : public ceres::FirstOrderFunction {
   double spacing_;
   double mass_;
   std::size_t count_;
+  std::vector<double> weights_;  // 1/sᵢ
   mutable std::vector<Evaluated> states_;
   mutable std::vector<voronoi::Moments<M>> lastMoments_;
   mutable std::exception_ptr failure_;
@@ -139,9 +147,12 @@ Vec<M> centerOf(std::span<const Vec<M>> sites) {
 template <int M>
 void minimizeLbfgs(std::vector<Vec<M>>& sites, Progress<M>& progress) {
   const OptimizeOptions& options = progress.options();
-  const double mass = progress.domain().volume() / static_cast<double>(sites.size());
+  // Where sites lie as densely as they should, the sum is n·V/∫ siteDensity: then this is the mass of a smallest cell.
+  double inverse = 0;
+  for (const Vec<M>& site : sites) inverse += 1 / progress.domain().siteDensity(site);
+  const double mass = progress.domain().volume() / inverse;
   for (int round = 0;; ++round) {
-    auto* energy = new ScaledEnergy<M>(progress, centerOf<M>(sites), std::pow(mass, 1.0 / M), mass, sites.size());
+    auto* energy = new ScaledEnergy<M>(progress, centerOf<M>(sites), std::pow(mass, 1.0 / M), mass, sites);
     const ceres::GradientProblem problem(energy);  // owns it
     AcceptedStep<M> callback(*energy, progress, round < options.reseedRounds, static_cast<Index>(sites.size()));
     ceres::GradientProblemSolver::Options solver;

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <string>
+#include <utility>
 
 #include "gather.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/voronoi/planar.hpp"
+#include "voroform/voronoi/weighted_moments.hpp"
 
 namespace voroform::cvt {
 
@@ -33,8 +35,15 @@ Evaluation<2> PlanarDomain::evaluate(std::span<const Vec2> sites, const RunConte
   const voronoi::PlanarDiagram diagram = voronoi::buildPlanarDiagram(sites, box, context);
   const Stopwatch watch;
   const voronoi::PlanarClip clip = voronoi::clipPlanar(diagram, region_, context);
-  result.moments = voronoi::planarMoments(diagram, clip, context);
-  gather(sites, result, context);
+  voronoi::WeightedMoments<2> weighted;
+  if (density_ != nullptr) {
+    const auto values = [&](std::span<const Vec2> points, std::span<double> out) { density_->values(points, out); };
+    weighted = voronoi::weightedMoments(diagram, clip, values, context);
+  } else {
+    weighted.moments = voronoi::planarMoments(diagram, clip, context);
+  }
+  result.moments = std::move(weighted.moments);
+  gather(sites, weighted.volumes, result, context);
   result.secondsDelaunay = diagram.secondsDelaunay;
   result.secondsAfterDelaunay = diagram.secondsFlattening + watch.seconds();
   return result;

@@ -2,7 +2,9 @@
 #pragma once
 
 #include <cstdint>
+#include <utility>
 
+#include "voroform/cvt/density.hpp"
 #include "voroform/cvt/domain.hpp"
 #include "voroform/implicit/implicit_function.hpp"
 #include "voroform/implicit/roots.hpp"
@@ -16,11 +18,14 @@ class ImplicitDomain final : public Domain<3> {
   // The seed is for the estimate of the volume.
   explicit ImplicitDomain(const implicit::ImplicitFunction& f,
                           implicit::RootFinder rootFinder = implicit::RootFinder::itp, std::uint64_t seed = 0);
+  // From now on the energy's density; null for ρ = 1.
+  void setDensity(DensityPtr<3> density) { density_ = std::move(density); }
 
   Box3 bounds() const override;
   Box3 siteBox() const override;
   bool contains(const Vec3& p) const override;
   double volume() const override;
+  double siteDensity(const Vec3& p) const override { return density_ ? density_->siteDensity(p) : 1; }
   Evaluation<3> evaluate(std::span<const Vec3> sites, const RunContext& context) const override;
   SiteGraph graph(std::span<const Vec3> sites, const RunContext& context) const override;
 
@@ -28,6 +33,7 @@ class ImplicitDomain final : public Domain<3> {
   const implicit::ImplicitFunction& f_;
   implicit::RootFinder rootFinder_;
   std::uint64_t seed_;
+  DensityPtr<3> density_;
 };
 
 }  // namespace voroform::cvt
