@@ -139,6 +139,11 @@ TEST(PlanarRegion, CountsItsBoundaryAsOutside) {
   EXPECT_FALSE(region.contains({-half, 2}));
   EXPECT_FALSE(region.contains({-half, 0}));
   EXPECT_FALSE(region.contains({std::numeric_limits<double>::quiet_NaN(), 1}));
+  // Rays through corners where the boundary goes on upwards.
+  const PlanarRegion hexagon(Rings{{{0, 0}, {4, 0}, {5, 1}, {4, 2}, {0, 2}, {-1, 1}}});
+  EXPECT_TRUE(hexagon.contains({0, 1}));
+  EXPECT_FALSE(hexagon.contains({-2, 1}));
+  EXPECT_FALSE(hexagon.contains({6, 1}));
 }
 
 struct FaultCase {
