@@ -17,6 +17,7 @@
 #include "voroform/implicit/tetrahedral_form.hpp"
 #include "voroform/mesh/formats.hpp"
 #include "voroform/mesh/moments.hpp"
+#include "voroform/mesh/planar_formats.hpp"
 #include "voroform/mesh/read_mesh.hpp"
 #include "voroform/mesh/validate.hpp"
 #include "voroform/pipeline/planar.hpp"
@@ -135,13 +136,22 @@ Json describeRegion(const std::string& input, const RunContext& context) {
           {"bounds", {{"min", {low.x(), low.y()}}, {"max", {high.x(), high.y()}}}}};
 }
 
-// Both kinds of .vtu are ours; the array that only cells have stands in the header.
-bool holdsCells(const fs::path& path) {
+// All kinds of .vtu are ours; the arrays that only some have stand in the header.
+std::string headOf(const fs::path& path) {
   std::ifstream stream = openInputFile(path);
   std::string head(1 << 16, '\0');
   stream.read(head.data(), static_cast<std::streamsize>(head.size()));
   head.resize(static_cast<std::size_t>(stream.gcount()));
-  return head.find("face_offsets") != std::string::npos;
+  return head;
+}
+
+Json describeVtu(const fs::path& path, const Settings& settings, const RunContext& context) {
+  const std::string head = headOf(path);
+  if (head.find(mesh::kPlanarFormatField) != std::string::npos) {
+    return {{"kind", "cells of a region of the plane"}, {"measures", "in the metrics.json beside it"}};
+  }
+  const bool holdsCells = head.find("face_offsets") != std::string::npos;
+  return holdsCells ? describeCells(mesh::readCellsVtu(path), settings, context) : describeForm(path, context);
 }
 
 void printText(const Json& json) {
@@ -172,12 +182,10 @@ int runInfo(const Settings& settings, const CLI::App&, const RunContext& context
   Json content;
   if (pipeline::isPlanarInput(settings.input)) {
     content = describeRegion(settings.input, context);
-  } else if (path.extension() != ".vtu") {
-    content = mesh::holdsFaces(path, context) ? describeMesh(path, context) : describePoints(path, context);
-  } else if (holdsCells(path)) {
-    content = describeCells(mesh::readCellsVtu(path), settings, context);
+  } else if (path.extension() == ".vtu") {
+    content = describeVtu(path, settings, context);
   } else {
-    content = describeForm(path, context);
+    content = mesh::holdsFaces(path, context) ? describeMesh(path, context) : describePoints(path, context);
   }
   json.update(content);
   if (settings.json) {

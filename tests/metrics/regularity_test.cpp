@@ -9,6 +9,7 @@
 #include <numeric>
 
 #include "support/complexes.hpp"
+#include "support/planar_tessellations.hpp"
 
 namespace voroform::metrics {
 namespace {
@@ -131,6 +132,56 @@ TEST(Regularity, ValuesThatAreNotNumbersGoLast) {
   EXPECT_TRUE(std::isnan(result.all.max));
   EXPECT_DOUBLE_EQ(result.all.median, 0.09);
   EXPECT_EQ(result.all.histogram[49], 1);
+}
+
+double regularityOf(const mesh::PlanarTessellation& tessellation) {
+  return regularities(mesh::cellMoments(tessellation, RunContext{})).at(0);
+}
+
+TEST(PlanarRegularities, RegularPolygons) {
+  const Vec2 far(3e4, -2e5);
+  EXPECT_NEAR(regularityOf(testing::regularPolygon(6, 2.5, Vec2::Zero())), 5 / (36 * std::sqrt(3.0)), 1e-15);
+  EXPECT_NEAR(kOptimalPlanarRegularity, 5 / (36 * std::sqrt(3.0)), 1e-16);
+  EXPECT_NEAR(regularityOf(testing::regularPolygon(6, 1e-3, Vec2::Zero())), kOptimalPlanarRegularity, 1e-15);
+  EXPECT_NEAR(regularityOf(testing::regularPolygon(6, 2.5, far)), kOptimalPlanarRegularity, 1e-10);
+  EXPECT_NEAR(regularityOf(testing::regularPolygon(4, 1, Vec2::Zero())), 1.0 / 12, 1e-15);
+  EXPECT_NEAR(regularityOf(testing::regularPolygon(3, 1, Vec2::Zero())), std::sqrt(3.0) / 18, 1e-15);
+  // The disc's is 1/(4π), approached from above with the inverse fourth power of the number of corners.
+  const double disc = 1 / (4 * std::numbers::pi);
+  const double coarse = regularityOf(testing::regularPolygon(50, 1, Vec2::Zero())) - disc;
+  const double fine = regularityOf(testing::regularPolygon(100, 1, Vec2::Zero())) - disc;
+  EXPECT_GT(fine, 0);
+  EXPECT_LT(fine, 1e-7);
+  EXPECT_NEAR(std::log2(coarse / fine), 4, 0.01);
+}
+
+TEST(PlanarRegularities, CellsWithHolesAndSeveralOutlines) {
+  // Of a square of edge a, ∫‖x‖² about its center is a⁴/6.
+  const auto values = regularities(mesh::cellMoments(testing::ringAndIsland(), RunContext{}));
+  ASSERT_EQ(values.size(), 2U);
+  EXPECT_NEAR(values[1], (16.0 / 6 - 1.0 / 6) / (2 * 9), 1e-14);
+  // The ring about (3, 3) and the triangle of area 3 about (26/3, 1), whose own moment is (legs² sum)·area/18.
+  const double ring = (1296.0 - 16.0) / 6;
+  const double triangle = 3 * (4 + 9) / 18.0;
+  const double distance2 = (Vec2(26.0 / 3, 1) - Vec2(3, 3)).squaredNorm();
+  EXPECT_NEAR(values[0], (ring + triangle + 32.0 * 3 / 35 * distance2) / (2 * 35 * 35), 1e-14);
+}
+
+TEST(PlanarRegularity, SplitsInteriorAndBoundaryCells) {
+  const mesh::PlanarTessellation tessellation = testing::squares(3);
+  std::vector<double> values(9, 0.1);
+  values[4] = 0.081;
+  values[0] = 0.5;
+  const Regularity result = planarRegularity(values, mesh::boundaryCells(tessellation));
+  EXPECT_EQ(result.optimal, kOptimalPlanarRegularity);
+  EXPECT_EQ(result.all.cells, 9);
+  EXPECT_EQ(result.interior.cells, 1);
+  EXPECT_EQ(result.boundary.cells, 8);
+  EXPECT_DOUBLE_EQ(result.interior.mean, 0.081);
+  EXPECT_DOUBLE_EQ(result.interior.rmse, 0.081 - kOptimalPlanarRegularity);
+  EXPECT_DOUBLE_EQ(result.boundary.max, 0.5);
+  EXPECT_DOUBLE_EQ(result.boundary.median, 0.1);
+  EXPECT_EQ(result.interior.histogram[3], 1);
 }
 
 }  // namespace

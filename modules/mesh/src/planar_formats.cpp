@@ -13,6 +13,7 @@ namespace voroform::mesh {
 namespace {
 
 constexpr std::uint8_t kPolygonType = 7;
+constexpr std::int32_t kFormatVersion = 1;
 constexpr const char* kCell = "cell";
 constexpr const char* kSite = "site";
 
@@ -58,7 +59,12 @@ void writePlanarVtu(const std::filesystem::path& path, const PlanarTessellation&
   std::vector<std::vector<double>> arrays;
   for (const CellData& array : data) arrays.push_back(ofPieces(pieces, array.values));
 
+  const std::vector<std::int32_t> format = {kFormatVersion};
+
   vtu::AppendedLayout layout;
+  layout.text("    <FieldData>");
+  layout.vector("Int32", kPlanarFormatField, 1, true, format);
+  layout.text("    </FieldData>");
   layout.text("    <Piece NumberOfPoints=\"" + std::to_string(points.size()) + "\" NumberOfCells=\"" +
               std::to_string(pieces.cells.size()) + "\">");
   layout.text("      <Points>");

@@ -1,6 +1,8 @@
 #include "planar_point_samples.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -112,10 +114,16 @@ class CellLocator {
 
 }  // namespace
 
+double coordinateRounding(const PlanarRegion& region) {
+  const Box2& box = region.bounds();
+  const double largest = std::max(box.min().cwiseAbs().maxCoeff(), box.max().cwiseAbs().maxCoeff());
+  return 4 * std::numeric_limits<double>::epsilon() * largest;
+}
+
 PlanarPointSamples locateSamples(const PlanarTessellation& tessellation, const PlanarRegion& region, Index samples,
                                  std::uint64_t seed, const RunContext& context) {
   if (samples <= 0 || tessellation.cellCount() == 0) return {};
-  const double tolerance = kTolerance * region.bounds().diagonal().norm();
+  const double tolerance = kTolerance * region.bounds().diagonal().norm() + coordinateRounding(region);
   const CellLocator cells(tessellation, tolerance);
   const Box2 everything = grown(region.bounds());
 

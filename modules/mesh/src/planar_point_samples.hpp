@@ -10,6 +10,9 @@
 
 namespace voroform::mesh {
 
+// What rounding may move a point of the region by: far from the origin it is more than a share of the region's size.
+double coordinateRounding(const PlanarRegion& region);
+
 struct PlanarPointSamples {
   Index located = 0;      // points that could be decided
   Violations violations;  // elements: numbers of samples

@@ -212,7 +212,7 @@ void checkBoundary(const PlanarTessellation& tessellation, const PlanarRegion& r
 
 void checkBoundaryPlaces(const PlanarTessellation& tessellation, const PlanarRegion& region,
                          const std::vector<Edge>& edges, PlanarCertificate& certificate, const RunContext& context) {
-  const double tolerance = kPlanarConsistency * region.bounds().diagonal().norm();
+  const double tolerance = kPlanarConsistency * region.bounds().diagonal().norm() + coordinateRounding(region);
   std::vector<std::uint8_t> stray(edges.size(), 0);
   parallelFor(context, edges.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {

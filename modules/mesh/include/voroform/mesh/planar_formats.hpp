@@ -12,6 +12,9 @@
 
 namespace voroform::mesh {
 
+// Field data by which files of writePlanarVtu are told from others: the version of the format, 1.
+inline constexpr const char* kPlanarFormatField = "voroform_planar_format";
+
 // VTK's XML unstructured grid, appended raw data, Float64 points with z = 0, cells of type VTK_POLYGON. A cell with
 // several outlines has a polygon for each, a cell with holes is cut into triangles; all pieces carry the cell's number
 // ("cell"), its site ("site", three components) and its values of the arrays given. Throws UsageError if an array has

@@ -48,7 +48,7 @@ struct PlanarCertificate {
 };
 
 // areaError and boundaryError above this are violations; off the boundary is what is farther than this share of the
-// bounding box's diagonal.
+// bounding box's diagonal and the rounding of coordinates.
 inline constexpr double kPlanarConsistency = 1e-9;
 
 // Never throws on a bad tessellation, whatever is wrong with it: it reports.
