@@ -15,6 +15,10 @@ namespace {
 
 // L-BFGS with 7 pairs: more gain nothing and cost memory.
 constexpr int kRank = 7;
+// A line search has failed if it took more evaluations than this (Ceres then starts anew along the gradient, which near
+// a minimum helps only for a few steps), for want of an exact gradient if rms‖cᵢ − xᵢ‖/h is at most that.
+constexpr int kMostSearchEvaluations = 20;
+constexpr double kSearchlessRange = 5e-3;
 
 // The energy as Ceres sees it: in units of the mean cell, on y = √2·(x − center)/h, so that E/(m̄h²) has the gradient
 // √2·(mᵢ/m̄)(xᵢ − cᵢ)/h and a unit step against it is Lloyd's. Free of the input's units.
@@ -116,13 +120,21 @@ template <int M>
 class AcceptedStep final : public ceres::IterationCallback {
  public:
   AcceptedStep(ScaledEnergy<M>& energy, Progress<M>& progress, bool mayReseed, Index siteCount)
-      : energy_(energy), progress_(progress), mayReseed_(mayReseed), siteCount_(siteCount) {}
+      : energy_(energy),
+        progress_(progress),
+        mayReseed_(mayReseed),
+        siteCount_(siteCount),
+        lastEvaluations_(progress.summary().evaluations) {}
 
   ceres::CallbackReturnType operator()(const ceres::IterationSummary& iteration) override {
     const State state = energy_.accepted(iteration.cost);
     stop = progress_.accept(state, siteCount_);
     wantsReseed = !stop && mayReseed_ && state.emptyCells > 0;
-    return stop || wantsReseed ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
+    const int evaluations = progress_.summary().evaluations;
+    const bool searchFailed =
+        evaluations - lastEvaluations_ > kMostSearchEvaluations && state.rmsMove <= kSearchlessRange;
+    lastEvaluations_ = evaluations;
+    return stop || wantsReseed || searchFailed ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
 
   bool stop = false;
@@ -133,6 +145,7 @@ class AcceptedStep final : public ceres::IterationCallback {
   Progress<M>& progress_;
   bool mayReseed_;
   Index siteCount_;
+  int lastEvaluations_;
 };
 
 template <int M>
@@ -174,7 +187,13 @@ void minimizeLbfgs(std::vector<Vec<M>>& sites, Progress<M>& progress) {
     sites = energy->toSites(parameters.data());
     if (callback.stop) return;
     if (!callback.wantsReseed) {
-      progress.stalled();
+      const std::vector<IterationRecord>& records = progress.summary().iterations;
+      if (records.empty() || records.back().rmsMove > kSearchlessRange) {
+        progress.stalled();
+        return;
+      }
+      progress.restarted();
+      minimizeWithoutSearch(sites, progress);
       return;
     }
     progress.summary().reseededSites += reseed(sites, energy->acceptedMoments(sites), options.seed, round);

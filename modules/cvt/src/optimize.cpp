@@ -16,21 +16,11 @@ constexpr double kReseedOffset = 0.2;
 
 template <int M>
 void minimizeLloyd(std::vector<Vec<M>>& sites, Progress<M>& progress) {
-  const OptimizeOptions& options = progress.options();
-  const Box<M> box = progress.domain().siteBox();
-  int round = 0;
+  int reseedRound = 0;
   while (true) {
     const Evaluation<M> state = progress.evaluate(sites);
     if (progress.accept(stateOf(state), static_cast<Index>(sites.size()))) return;
-    for (std::size_t i = 0; i < sites.size(); ++i) {
-      if (!(state.moments[i].mass > 0)) continue;
-      // What flat caps leave of a thin part can have its centroid anywhere.
-      const Vec<M> centroid = sites[i] + state.moments[i].first / state.moments[i].mass;
-      if (box.contains(centroid)) sites[i] = centroid;
-    }
-    if (state.emptyCells > 0 && round < options.reseedRounds) {
-      progress.summary().reseededSites += reseed(sites, state.moments, options.seed, round++);
-    }
+    lloydStep(sites, state, reseedRound, progress);
   }
 }
 
@@ -61,6 +51,20 @@ Index reseed(std::vector<Vec<M>>& sites, const std::vector<voronoi::Moments<M>>&
         sites[host] + cell.first / cell.mass + kReseedOffset * std::pow(cell.mass, 1.0 / M) * direction;
   }
   return static_cast<Index>(count);
+}
+
+template <int M>
+void lloydStep(std::vector<Vec<M>>& sites, const Evaluation<M>& state, int& reseedRound, Progress<M>& progress) {
+  const Box<M> box = progress.domain().siteBox();
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    if (!(state.moments[i].mass > 0)) continue;
+    // What flat caps leave of a thin part can have its centroid anywhere.
+    const Vec<M> centroid = sites[i] + state.moments[i].first / state.moments[i].mass;
+    if (box.contains(centroid)) sites[i] = centroid;
+  }
+  if (state.emptyCells > 0 && reseedRound < progress.options().reseedRounds) {
+    progress.summary().reseededSites += reseed(sites, state.moments, progress.options().seed, reseedRound++);
+  }
 }
 
 const char* toString(StopReason reason) {
@@ -101,6 +105,10 @@ OptimizeSummary optimize(const Domain<M>& domain, std::vector<Vec<M>>& sites, co
   Progress<M> progress(domain, options, summary, context);
   if (options.iterations == 0 || options.optimizer == Optimizer::lloyd) {
     minimizeLloyd(sites, progress);
+  } else if (options.optimizer == Optimizer::lloydNewton) {
+    minimizeLloydNewton(sites, progress);
+  } else if (options.optimizer == Optimizer::monteCarlo) {
+    minimizeMonteCarlo(sites, progress);
   } else {
     minimizeLbfgs(sites, progress);
   }
@@ -109,6 +117,8 @@ OptimizeSummary optimize(const Domain<M>& domain, std::vector<Vec<M>>& sites, co
 
 template Index reseed<2>(std::vector<Vec2>&, const std::vector<voronoi::Moments<2>>&, std::uint64_t, int);
 template Index reseed<3>(std::vector<Vec3>&, const std::vector<voronoi::Moments<3>>&, std::uint64_t, int);
+template void lloydStep<2>(std::vector<Vec2>&, const Evaluation<2>&, int&, Progress<2>&);
+template void lloydStep<3>(std::vector<Vec3>&, const Evaluation<3>&, int&, Progress<3>&);
 template OptimizeSummary optimize<2>(const Domain<2>&, std::vector<Vec2>&, const OptimizeOptions&, const RunContext&);
 template OptimizeSummary optimize<3>(const Domain<3>&, std::vector<Vec3>&, const OptimizeOptions&, const RunContext&);
 

@@ -32,6 +32,7 @@ class Progress {
   const Domain<M>& domain() const { return domain_; }
   const OptimizeOptions& options() const { return options_; }
   OptimizeSummary& summary() { return summary_; }
+  const RunContext& context() const { return context_; }
 
   Evaluation<M> evaluate(std::span<const Vec<M>> sites) {
     context_.throwIfCancelled();
@@ -39,26 +40,29 @@ class Progress {
     return domain_.evaluate(sites, context_);
   }
 
-  // Records an accepted state and tells whether to stop there.
-  bool accept(const State& state, Index siteCount) {
+  // Records an accepted state; the stop becomes what the tolerances make of it.
+  void record(const State& state, Index siteCount) {
     summary_.iterations.push_back({state.energy, state.rmsMove, state.meanRegularity, summary_.evaluations});
     summary_.energy = state.energy;
     summary_.optimalEnergy = optimalEnergy<M>(siteCount, state.volume);
     summary_.relativeError = (state.energy - summary_.optimalEnergy) / summary_.optimalEnergy;
-    const int done = static_cast<int>(summary_.iterations.size()) - 1 - summary_.restarts;
-    summary_.iterationsDone = done;
+    summary_.iterationsDone = static_cast<int>(summary_.iterations.size()) - 1 - summary_.restarts;
+    const bool converged = (options_.convergence > 0 && state.rmsMove <= options_.convergence) ||
+                           (options_.gradientTolerance > 0 && state.relativeGradient <= options_.gradientTolerance);
+    summary_.stop = converged                ? StopReason::converged
+                    : reachedRelativeError() ? StopReason::relativeError
+                                             : StopReason::iterations;
+  }
+  bool reachedRelativeError() const {
+    return options_.relativeError > 0 && summary_.relativeError <= options_.relativeError;
+  }
+
+  // Records an accepted state and tells whether to stop there.
+  bool accept(const State& state, Index siteCount) {
+    record(state, siteCount);
+    const int done = summary_.iterationsDone;
     if (options_.iterations > 0) context_.report("optimize", static_cast<double>(done) / options_.iterations);
-    if ((options_.convergence > 0 && state.rmsMove <= options_.convergence) ||
-        (options_.gradientTolerance > 0 && state.relativeGradient <= options_.gradientTolerance)) {
-      summary_.stop = StopReason::converged;
-      return true;
-    }
-    if (options_.relativeError > 0 && summary_.relativeError <= options_.relativeError) {
-      summary_.stop = StopReason::relativeError;
-      return true;
-    }
-    summary_.stop = StopReason::iterations;
-    return done >= options_.iterations;
+    return summary_.stop != StopReason::iterations || done >= options_.iterations;
   }
 
   // A restart evaluates the state it starts from again: that is no iteration.
@@ -77,8 +81,20 @@ template <int M>
 Index reseed(std::vector<Vec<M>>& sites, const std::vector<voronoi::Moments<M>>& moments, std::uint64_t seed,
              int round);
 
-// Minimizes by L-BFGS until the progress says to stop.
+// Moves the sites to the centroids of their cells; if cells are empty, their sites too, in the first rounds asked for.
+template <int M>
+void lloydStep(std::vector<Vec<M>>& sites, const Evaluation<M>& state, int& reseedRound, Progress<M>& progress);
+
+// Each minimizes until the progress says to stop.
 template <int M>
 void minimizeLbfgs(std::vector<Vec<M>>& sites, Progress<M>& progress);
+// Goes on where a line search failed. The progress stalls when the residual no longer falls.
+template <int M>
+void minimizeWithoutSearch(std::vector<Vec<M>>& sites, Progress<M>& progress);
+template <int M>
+void minimizeLloydNewton(std::vector<Vec<M>>& sites, Progress<M>& progress);
+// Until all perturbations are tried.
+template <int M>
+void minimizeMonteCarlo(std::vector<Vec<M>>& sites, Progress<M>& progress);
 
 }  // namespace voroform::cvt

@@ -23,7 +23,9 @@ enum class RandomStream : std::uint64_t {
   meshSampling,
   hammersley,
   lattice,
-  thinning
+  thinning,
+  generalPosition,
+  perturbation
 };
 
 // 64 random bits for a key: SplitMix64's finalizer over the mixed key.
