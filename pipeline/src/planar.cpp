@@ -20,7 +20,8 @@ namespace {
 constexpr std::string_view kShapePrefix = "shape2d:";
 constexpr const char* kKind = "region";
 
-// Measured peak of whole runs, certificate and writers included, at a million sites of the square.
+// Measured peaks of whole runs, certificate and writers included, at a million sites of the square and the star: 0.72
+// and 0.83 kB a site.
 constexpr std::uint64_t kBytesPerSite = 1200;
 
 void requireMemory(const PlanarOptions& options) {

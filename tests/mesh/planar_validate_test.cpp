@@ -133,6 +133,7 @@ TEST(PlanarCertificate, RejectsFilledHoles) {
   EXPECT_FALSE(certificate.valid);
   EXPECT_EQ(certificate.boundaryLoops, 1);
   EXPECT_EQ(certificate.rings, 2);
+  EXPECT_THAT(certificate.problems, Contains(HasSubstr("loops is 1, that of the region's rings 2")));
   EXPECT_NEAR(certificate.areaError, 1.0 / 15, 1e-12);
   EXPECT_GT(certificate.pointViolations, 0);
 }
@@ -142,6 +143,10 @@ TEST(PlanarCertificate, RejectsEdgesThatDoNotMatch) {
   wrong.neighbors[1] = 5;  // of cell 0, towards cell 1
   EXPECT_EQ(certify(wrong).unmatchedEdges, 2);
   EXPECT_FALSE(certify(wrong).valid);
+
+  PlanarTessellation wrongBack = testing::squares(4);
+  wrongBack.neighbors[4 + 3] = 5;  // of cell 1, towards cell 0
+  EXPECT_EQ(certify(wrongBack).unmatchedEdges, 2);
 
   // Both cells say that their common edge is the boundary.
   PlanarTessellation cut = testing::squares(4);

@@ -1,6 +1,6 @@
 #include "planar_pieces.hpp"
 
-#include <deque>
+#include <utility>
 
 #include <CGAL/Constrained_Delaunay_triangulation_2.h>
 #include <CGAL/Exact_predicates_inexact_constructions_kernel.h>
@@ -12,38 +12,34 @@ namespace voroform::mesh {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_inexact_constructions_kernel;
-// Of a vertex: its index. Of a face: how many constraints lie between it and the outside.
-struct Depth {
-  int value = -1;
+enum class Side : std::uint8_t { unknown, outside, inside };
+// What is known of a face.
+struct Place {
+  Side side = Side::unknown;
 };
+// A vertex's index among the pieces' points.
 struct Number {
   Index value = kNone;
 };
 using VertexBase = CGAL::Triangulation_vertex_base_with_info_2<Number, Kernel>;
 using FaceBase =
-    CGAL::Constrained_triangulation_face_base_2<Kernel, CGAL::Triangulation_face_base_with_info_2<Depth, Kernel>>;
+    CGAL::Constrained_triangulation_face_base_2<Kernel, CGAL::Triangulation_face_base_with_info_2<Place, Kernel>>;
 using DataStructure = CGAL::Triangulation_data_structure_2<VertexBase, FaceBase>;
 // Rounded loops may cross where they all but touch: the tag has such crossings inserted as vertices.
 using Triangulation = CGAL::Constrained_Delaunay_triangulation_2<Kernel, DataStructure, CGAL::Exact_predicates_tag>;
 using FaceHandle = Triangulation::Face_handle;
 
-// Floods the faces from outside, one ring of constraints after the other.
-void setDepths(Triangulation& triangulation) {
-  std::deque<std::pair<FaceHandle, int>> front = {{triangulation.infinite_face(), 0}};
+// Marks the faces that an odd number of constraints lies around, whatever way one takes to them from outside.
+void markInside(Triangulation& triangulation) {
+  std::vector<std::pair<FaceHandle, Side>> front = {{triangulation.infinite_face(), Side::outside}};
   while (!front.empty()) {
-    const auto [face, depth] = front.front();
-    front.pop_front();
-    if (face->info().value >= 0) continue;
-    face->info().value = depth;
+    const auto [face, side] = front.back();
+    front.pop_back();
+    if (face->info().side != Side::unknown) continue;
+    face->info().side = side;
     for (int i = 0; i < 3; ++i) {
-      const FaceHandle neighbor = face->neighbor(i);
-      if (neighbor->info().value >= 0) continue;
-      // Faces of the same depth come before deeper ones.
-      if (face->is_constrained(i)) {
-        front.emplace_back(neighbor, depth + 1);
-      } else {
-        front.emplace_front(neighbor, depth);
-      }
+      const Side other = side == Side::inside ? Side::outside : Side::inside;
+      front.emplace_back(face->neighbor(i), face->is_constrained(i) ? other : side);
     }
   }
 }
@@ -95,9 +91,9 @@ class Cutter {
         if (handles[k] != next) triangulation.insert_constraint(handles[k], next);
       }
     }
-    setDepths(triangulation);
+    markInside(triangulation);
     for (const auto& face : triangulation.finite_face_handles()) {
-      if (face->info().value % 2 == 0) continue;
+      if (face->info().side != Side::inside) continue;
       for (int i = 0; i < 3; ++i) pieces_.connectivity.push_back(numberOf(*face->vertex(i)));
       endPiece(cell);
     }

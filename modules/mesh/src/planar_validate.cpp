@@ -198,8 +198,8 @@ void checkBoundary(const PlanarTessellation& tessellation, const PlanarRegion& r
   certificate.boundaryLoops = static_cast<Index>(lengths.size());
   certificate.rings = static_cast<Index>(expected.size());
   if (lengths.size() != expected.size()) {
-    certificate.problems.push_back("the boundary has " + std::to_string(lengths.size()) + " loops, the region " +
-                                   std::to_string(expected.size()) + " rings");
+    certificate.problems.push_back("the number of the boundary's loops is " + std::to_string(lengths.size()) +
+                                   ", that of the region's rings " + std::to_string(expected.size()));
     return;
   }
   for (std::size_t r = 0; r < lengths.size(); ++r) {
