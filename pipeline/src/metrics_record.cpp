@@ -94,7 +94,8 @@ Json clippingJson(const cvt::TessellateSummary& summary) {
           {"chord_points", clip.chordPoints},
           {"function_evaluations", clip.evaluations},
           {"oracle_share", clip.oracleShare},
-          {"reseeded_sites", summary.reseededSites}};
+          {"reseeded_sites", summary.reseededSites},
+          {"moved_sites", summary.movedSites}};
 }
 
 Json accuracyJson(const std::optional<metrics::Accuracy>& accuracy) {

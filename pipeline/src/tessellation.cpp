@@ -168,7 +168,7 @@ Tessellation tessellate(const Form& form, const cvt::TessellateOptions& options,
   result.summary = std::move(tessellated.summary);
   result.seconds = watch.seconds();
   if (result.complex.cellCount == 0) {
-    throw MethodError("the surface cuts no edge between the cells of the " + std::to_string(options.sites) +
+    throw MethodError("the surface cuts no edge between the cells of the " + std::to_string(result.summary.sites) +
                       " sites, so that no cell is left: use more sites");
   }
   warnOfClipping(result.summary, recording);

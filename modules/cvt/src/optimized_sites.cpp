@@ -68,6 +68,7 @@ OptimizedSites<M> optimizeSites(const Domain<M>& domain, std::span<const Vec<M>>
   }
   watch.restart();
   static_cast<OptimizeSummary&>(result.summary) = optimize(domain, result.sites, options, context);
+  result.summary.sites = static_cast<Index>(result.sites.size());
   result.summary.secondsOptimization = watch.seconds();
   return result;
 }

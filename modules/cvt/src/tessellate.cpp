@@ -1,8 +1,10 @@
 #include "voroform/cvt/tessellate.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string>
 
+#include "general_position.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/memory.hpp"
 #include "voroform/cvt/energy.hpp"
@@ -23,6 +25,13 @@ void throwIfInvalid(const TessellateOptions& options) {
 
 }  // namespace
 
+std::vector<std::string> validate(const TessellateOptions& options) {
+  std::vector<std::string> violations = validate(static_cast<const SiteOptions&>(options));
+  const std::vector<std::string> others = validate(options.density);
+  violations.insert(violations.end(), others.begin(), others.end());
+  return violations;
+}
+
 std::uint64_t estimatedMemory(Index sites) { return kBytesPerSite * static_cast<std::uint64_t>(std::max(sites, 0)); }
 
 void requireMemory(const TessellateOptions& options) {
@@ -37,7 +46,15 @@ OptimizedSites<3> optimizeSites(const implicit::ImplicitFunction& f, const Tesse
                                 const RunContext& context) {
   throwIfInvalid(options);
   requireMemory(options);
-  return optimizeSites<3>(ImplicitDomain(f, options.rootFinder, options.seed), options.given, options, context);
+  const Stopwatch watch;
+  ImplicitDomain domain(f, options.rootFinder, options.seed);
+  const auto count = static_cast<double>(
+      options.initialization == Initialization::given ? std::max<std::size_t>(options.given.size(), 1) : options.sites);
+  domain.setDensity(makeDensity(f, options.density, std::cbrt(domain.volume() / count), context));
+  const double secondsDensity = watch.seconds();
+  OptimizedSites<3> result = optimizeSites<3>(domain, options.given, options, context);
+  result.summary.secondsInitial += secondsDensity;
+  return result;
 }
 
 TessellateResult tessellateSites(const OptimizedSites<3>& optimized, const implicit::ImplicitFunction& f,
@@ -50,7 +67,10 @@ TessellateResult tessellateSites(const OptimizedSites<3>& optimized, const impli
   clipOptions.cap = options.cap;
   clipOptions.fit = options.fit;
   clipOptions.rootFinder = options.rootFinder;
-  const voronoi::Diagram diagram = voronoi::buildDiagram(optimized.sites, siteDomain(f), context);
+  std::vector<Vec3> sites = optimized.sites;
+  const Box3 domain = siteDomain(f);
+  voronoi::Diagram diagram = voronoi::buildDiagram(sites, domain, context);
+  result.summary.movedSites = moveToGeneralPosition(sites, diagram, domain, context);
   voronoi::ClippedDiagram clipped = voronoi::clip(diagram, f, clipOptions, context);
   result.complex = voronoi::toComplex(diagram, clipped, f, frame, clipOptions, context);
   result.summary.clip = clipped.summary;

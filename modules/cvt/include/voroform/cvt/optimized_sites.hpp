@@ -35,6 +35,7 @@ struct SiteOptions : OptimizeOptions {
 std::vector<std::string> validate(const SiteOptions& options);
 
 struct SiteSummary : OptimizeSummary {
+  Index sites = 0;                     // a lattice may have other than were asked for
   std::vector<HierarchyLevel> levels;  // of the hierarchical ones, the coarsest first, without the finest
   double secondsInitial = 0;           // coarser levels included
   double secondsOptimization = 0;

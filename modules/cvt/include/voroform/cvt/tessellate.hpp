@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "voroform/core/run_context.hpp"
+#include "voroform/cvt/density.hpp"
 #include "voroform/cvt/optimized_sites.hpp"
 #include "voroform/implicit/implicit_function.hpp"
 #include "voroform/implicit/roots.hpp"
@@ -17,6 +18,8 @@ namespace voroform::cvt {
 struct TessellateOptions : SiteOptions {
   // Initial sites for Initialization::given, in the form's coordinates.
   std::vector<Vec3> given;
+  // Where cells are to be small.
+  DensityOptions density;
   // Caps of the result. The optimization itself always uses CapKind::flat, the cheapest.
   voronoi::CapKind cap = voronoi::CapKind::cvt3;
   // Fit the boundary to S in the mean square (voronoi::ClipOptions::fit): with the caps of cvt3 that is cvt4.
@@ -26,8 +29,12 @@ struct TessellateOptions : SiteOptions {
   // usableMemory().
   std::uint64_t memoryLimit = 0;
 };
+// Every violation of the options, as sentences naming field, value and rule; empty if there is none.
+std::vector<std::string> validate(const TessellateOptions& options);
+
 struct TessellateSummary : SiteSummary {  // its energies are of flat caps
   Index emptySites = 0;                   // sites without a cell at the end: dropped
+  Index movedSites = 0;  // of more than four cells that met at a point, moved apart by a millionth of their size
   voronoi::ClipSummary clip;
   double secondsClipping = 0;
 };
