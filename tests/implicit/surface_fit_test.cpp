@@ -6,7 +6,9 @@
 
 #include <array>
 #include <cmath>
+#include <limits>
 #include <map>
+#include <numbers>
 #include <vector>
 
 #include "voroform/core/error.hpp"
@@ -103,6 +105,7 @@ FitOptions exactFit() {
   FitOptions options;
   options.damping = 0;
   options.normalWeight = 0;
+  options.huberScale = std::numeric_limits<double>::infinity();
   return options;
 }
 
@@ -193,6 +196,87 @@ TEST(SurfaceFit, KeepsFixedVerticesAndRanges) {
   EXPECT_GT(shifts[3], 1e-4);  // the others move outward
 }
 
+// The upper edge of a box stood on another edge, and triangles that interpolate it: a roof whose ridge lies between two
+// columns of vertices.
+struct Roof {
+  static constexpr int kColumns = 21;
+  static constexpr int kRows = 15;
+  static constexpr double kRidge = 10.4;  // between columns 10 and 11
+  ImplicitPtr box = transformed(implicit::box(Vec3::Constant(80)),
+                                Eigen::AngleAxisd(std::numbers::pi / 4, Vec3::UnitY()).toRotationMatrix(),
+                                Vec3(kRidge, 0, -40 * std::numbers::sqrt2));
+  Surface surface;
+
+  Roof() {
+    for (int i = 0; i < kColumns; ++i) {
+      for (int j = 0; j < kRows; ++j) {
+        surface.positions.emplace_back(i, j - 0.5 * kRows, -std::abs(i - kRidge));
+        surface.directions.push_back(Vec3(i < kRidge ? -1 : 1, 0, 1).normalized());
+        if (i + 1 == kColumns || j + 1 == kRows) continue;
+        const auto at = [](int column, int row) { return static_cast<Index>(column * kRows + row); };
+        surface.triangles.push_back({at(i, j), at(i + 1, j), at(i + 1, j + 1)});
+        surface.triangles.push_back({at(i, j), at(i + 1, j + 1), at(i, j + 1)});
+      }
+    }
+    surface.ranges.assign(surface.positions.size(), {-1.0, 1.0});
+  }
+
+  // Mean distance to the box by area, at the centroids of 64 parts of each triangle.
+  double meanDistance(const std::vector<Vec3>& positions) const {
+    constexpr int kParts = 8;
+    double sum = 0;
+    double area = 0;
+    for (const auto& t : surface.triangles) {
+      const Vec3& a = positions[static_cast<std::size_t>(t[0])];
+      const Vec3 u = positions[static_cast<std::size_t>(t[1])] - a;
+      const Vec3 v = positions[static_cast<std::size_t>(t[2])] - a;
+      const double part = 0.5 * u.cross(v).norm() / (kParts * kParts);
+      for (int i = 0; i < kParts; ++i) {
+        for (int j = 0; i + j < kParts; ++j) {
+          for (const double offset : {1.0 / 3, 2.0 / 3}) {
+            if (offset > 0.5 && i + j == kParts - 1) continue;
+            sum += part * std::abs(box->value(a + (i + offset) / kParts * u + (j + offset) / kParts * v));
+            area += part;
+          }
+        }
+      }
+    }
+    return sum / area;
+  }
+};
+
+TEST(SurfaceFit, CreasesPullFlatsLessThanInLeastSquares) {
+  const Roof roof;
+  FitSummary summary;
+  FitOptions squares;
+  squares.huberScale = std::numeric_limits<double>::infinity();
+  const auto plain = fitShifts(roof.surface.problem(), *roof.box, squares, {}, summary);
+  const auto shifts = fitShifts(roof.surface.problem(), *roof.box, {}, {}, summary);
+  EXPECT_LT(roof.meanDistance(roof.surface.moved(shifts)), 0.9 * roof.meanDistance(roof.surface.moved(plain)));
+  // The vertices beside the ridge move out, those of the next columns less than in plain least squares.
+  for (int row = 3; row < Roof::kRows - 3; ++row) {
+    const auto at = [&](int column) { return static_cast<std::size_t>(column * Roof::kRows + row); };
+    EXPECT_GT(shifts[at(10)], 1e-3);
+    EXPECT_GT(shifts[at(11)], 1e-3);
+    for (const int column : {9, 12}) EXPECT_LT(std::abs(shifts[at(column)]), 0.75 * std::abs(plain[at(column)]));
+    for (const int column : {3, 18}) EXPECT_NEAR(shifts[at(column)], 0, 1e-3);
+  }
+}
+
+TEST(SurfaceFit, HoldsVerticesOfTrianglesThatFollowNoSurface) {
+  Surface surface = sphereOfTriangles(3);
+  std::swap(surface.triangles[5][0], surface.triangles[5][1]);  // S is behind it
+  FitSummary summary;
+  const auto shifts = fitShifts(surface.problem(), *sphere(1), {}, {}, summary);
+  EXPECT_EQ(summary.held, 3);
+  std::size_t kept = 0;
+  for (std::size_t v = 0; v < shifts.size(); ++v) {
+    if (shifts[v] == 0) ++kept;
+  }
+  EXPECT_EQ(kept, 3U);
+  for (const Index v : surface.triangles[5]) EXPECT_EQ(shifts[static_cast<std::size_t>(v)], 0);
+}
+
 TEST(SurfaceFit, DampingShrinksShifts) {
   const Surface surface = sphereOfTriangles(3);
   FitSummary summary;
@@ -232,8 +316,9 @@ TEST(SurfaceFit, RefusesOptionsOutOfRange) {
   FitOptions options;
   options.damping = -1;
   options.normalWeight = std::nan("");
+  options.huberScale = 0;
   options.rounds = 0;
-  EXPECT_THAT(validate(options), SizeIs(3));
+  EXPECT_THAT(validate(options), SizeIs(4));
   FitSummary summary;
   EXPECT_THROW(fitShifts({}, *sphere(1), options, {}, summary), UsageError);
   EXPECT_THAT(validate(FitOptions{}), SizeIs(0));

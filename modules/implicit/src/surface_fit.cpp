@@ -17,6 +17,9 @@ constexpr int kMostIterations = 100;
 constexpr double kSolverTolerance = 1e-4;
 // A quadrature point farther from S than this share of its triangle's longest edge sees another part of S.
 constexpr double kReach = 1.0;
+// A triangle with more quadrature points than this that do not find S does not follow it: it spans a gap or a groove
+// narrower than itself.
+constexpr int kMostUnfound = 3;
 
 // Quadrature of degree four on a triangle, six points (Cowper 1973): barycentric coordinates and weights of sum 1.
 struct QuadraturePoint {
@@ -74,6 +77,7 @@ class Fit {
   Fit(const FitProblem& problem, const ImplicitFunction& f, const FitOptions& options, const RunContext& context)
       : problem_(problem), f_(f), options_(options), context_(context), blocks_(problem.triangles.size()) {
     linkVertices();
+    held_.assign(problem.positions.size(), 0);
   }
 
   void assemble(const std::vector<double>& shifts) {
@@ -89,6 +93,33 @@ class Fit {
                            values.data() + (t - begin) * kQuadrature.size());
       }
     });
+  }
+
+  // Fixes the vertices of triangles that do not follow S: how far S is from these says nothing about the moves.
+  Index holdUnseen() {
+    for (std::size_t t = 0; t < blocks_.size(); ++t) {
+      if (blocks_[t].unfound <= kMostUnfound) continue;
+      for (const Index v : problem_.triangles[t]) held_[static_cast<std::size_t>(v)] = 1;
+    }
+    return static_cast<Index>(std::count(held_.begin(), held_.end(), 1));
+  }
+
+  // Huber's weights (1964), a triangle at a time: what is far beyond the mean counts by its distance, not its square.
+  // No triangle across a crease can follow it; in the mean square it would pull its neighbors off the flats beside it.
+  void weigh() {
+    double sum = 0;
+    double area = 0;
+    for (const TriangleBlock& block : blocks_) {
+      sum += std::sqrt(block.squares * block.area);
+      area += block.area;
+    }
+    const double most = area > 0 ? options_.huberScale * sum / area : 0;
+    for (TriangleBlock& block : blocks_) {
+      if (!(block.squares > most * most * block.area)) continue;
+      const double weight = most / std::sqrt(block.squares / block.area);
+      for (double& entry : block.matrix) entry *= weight;
+      for (double& entry : block.gradient) entry *= weight;
+    }
   }
 
   // Solves for the change of the shifts by conjugate gradients with the diagonal as preconditioner.
@@ -133,7 +164,7 @@ class Fit {
 
  private:
   bool free(std::size_t v) const {
-    return problem_.ranges[v][0] < problem_.ranges[v][1] && problem_.directions[v] != Vec3::Zero();
+    return held_[v] == 0 && problem_.ranges[v][0] < problem_.ranges[v][1] && problem_.directions[v] != Vec3::Zero();
   }
 
   Vec3 positionOf(Index vertex, const std::vector<double>& shifts) const {
@@ -270,6 +301,7 @@ class Fit {
   std::vector<std::uint32_t> offsets_;  // rows: vertices → corners
   std::vector<std::uint32_t> corners_;  // 3·triangle + corner
   std::vector<double> mass_;            // a third of the area around each vertex
+  std::vector<std::uint8_t> held_;      // vertices of triangles that do not follow S
 };
 
 }  // namespace
@@ -281,6 +313,9 @@ std::vector<std::string> validate(const FitOptions& options) {
   }
   if (!(options.normalWeight >= 0)) {
     violations.push_back("normalWeight is " + std::to_string(options.normalWeight) + ", but must be at least 0");
+  }
+  if (!(options.huberScale > 0)) {
+    violations.push_back("huberScale is " + std::to_string(options.huberScale) + ", but must be above 0");
   }
   if (options.rounds < 1) {
     violations.push_back("rounds is " + std::to_string(options.rounds) + ", but must be at least 1");
@@ -305,7 +340,12 @@ std::vector<double> fitShifts(const FitProblem& problem, const ImplicitFunction&
       area += block.area;
       summary.unfound += block.unfound;
     }
-    if (round == 0) summary.rmsBefore = area > 0 ? std::sqrt(squares / area) : 0;
+    if (round == 0) {
+      summary.rmsBefore = area > 0 ? std::sqrt(squares / area) : 0;
+      summary.held = fit.holdUnseen();
+    } else {
+      fit.weigh();
+    }
     const std::vector<double> change = fit.solve(shifts, summary.iterations);
     summary.bounded = 0;
     for (std::size_t v = 0; v < shifts.size(); ++v) {

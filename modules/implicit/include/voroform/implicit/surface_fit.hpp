@@ -27,8 +27,12 @@ struct FitOptions {
   double damping = 0.02;
   // Weight of the normals: of ∫ area·|∇δ|² against ∫ δ², ∇ along the triangle; at least 0.
   double normalWeight = 0.05;
+  // From the second round on, triangles whose root-mean-square distance is this many times the mean over all of them
+  // or more count by their distance instead of its square; above 0, infinity for plain least squares. On surfaces
+  // without creases that are few triangles.
+  double huberScale = 1.5;
   // Rounds of sampling and solving, at least 1; each begins with the vertices where the last one left them.
-  int rounds = 1;
+  int rounds = 2;
 };
 std::vector<std::string> validate(const FitOptions& options);
 
@@ -37,13 +41,15 @@ struct FitSummary {
   std::int64_t unfound = 0;  // of them, those without S nearby: left out
   int iterations = 0;        // of the conjugate gradients, in all rounds
   Index bounded = 0;         // vertices stopped by the end of their range
+  Index held = 0;            // vertices of triangles that S cannot be seen from: they stay
   double rmsBefore = 0;  // √(∫ distance² / area) over the triangles, by the quadrature, at the first round's start
   double seconds = 0;
 };
 
 // The shifts s that minimize ∫ distance(x, S)² dx over the moved triangles, to first order in s about where each round
 // starts: with δ the signed distance at a quadrature point and n S's normal there, Σ area·w·(δ + Σ bᵢ sᵢ n·dᵢ)². The
-// integral is by a quadrature of degree four (six points a triangle). The same bits for any number of threads.
+// integral is by a quadrature of degree four (six points a triangle). Vertices of triangles from most of whose points
+// no S is found stay. The same bits for any number of threads.
 std::vector<double> fitShifts(const FitProblem& problem, const ImplicitFunction& f, const FitOptions& options,
                               const RunContext& context, FitSummary& summary);
 
