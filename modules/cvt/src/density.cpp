@@ -102,6 +102,18 @@ Density<M>::Density(std::function<double(const Vec<M>&)> relativeSize, double ra
   }
 }
 
+namespace {
+
+// s^(−(M+2)), s clamped to [1, ratio].
+template <int M>
+double densityOfSize(double size, double ratio) {
+  const double inverse = 1 / std::min(std::max(size, 1.0), ratio);
+  const double squared = inverse * inverse;
+  return M == 2 ? squared * squared : squared * squared * inverse;
+}
+
+}  // namespace
+
 template <int M>
 double Density<M>::relativeSize(const Vec<M>& p) const {
   return std::clamp(relativeSize_(p), 1.0, ratio_);
@@ -109,14 +121,13 @@ double Density<M>::relativeSize(const Vec<M>& p) const {
 
 template <int M>
 double Density<M>::value(const Vec<M>& p) const {
-  const double inverse = 1 / relativeSize(p);
-  const double squared = inverse * inverse;
-  return M == 2 ? squared * squared : squared * squared * inverse;
+  return densityOfSize<M>(relativeSize_(p), ratio_);
 }
 
 template <int M>
 void Density<M>::values(std::span<const Vec<M>> points, std::span<double> out) const {
-  for (std::size_t k = 0; k < points.size(); ++k) out[k] = value(points[k]);
+  for (std::size_t k = 0; k < points.size(); ++k) out[k] = relativeSize_(points[k]);
+  for (double& value : out) value = densityOfSize<M>(value, ratio_);
 }
 
 template <int M>
@@ -156,8 +167,8 @@ std::vector<std::string> validate(const DensityOptions& options) {
 template <int M>
 DensityPtr<M> boundaryDensity(std::function<double(const Vec<M>&)> depth, double ratio, double width) {
   if (!(width > 0)) throw UsageError("the width of the density is " + number(width) + ", but must be above 0");
-  auto relativeSize = [depth = std::move(depth), ratio, width](const Vec<M>& p) {
-    const double t = std::clamp(depth(p) / width, 0.0, 1.0);
+  auto relativeSize = [depth = std::move(depth), ratio, perWidth = 1 / width](const Vec<M>& p) {
+    const double t = std::clamp(depth(p) * perWidth, 0.0, 1.0);
     return 1 + (ratio - 1) * t * t * (3 - 2 * t);
   };
   return std::make_shared<const Density<M>>(std::move(relativeSize), ratio);

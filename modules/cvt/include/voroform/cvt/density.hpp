@@ -56,7 +56,7 @@ const char* toString(DensityKind kind);
 struct DensityOptions {
   DensityKind kind = DensityKind::constant;
   // Size of the largest cells relative to the smallest, from 1 to Density::kMostRatio.
-  double ratio = 2;
+  double ratio = 3;
   // Of the boundary density: the depth, in the form's units, at which cells reach their full size. 0: kDefaultWidth
   // times the mean size of cells, (V/n)^(1/M).
   double width = 0;
@@ -80,7 +80,7 @@ DensityPtr<M> boundaryDensity(std::function<double(const Vec<M>&)> depth, double
 // value of the nearest piece of S, smoothed over neighboring nodes.
 //
 // Throws UsageError on bad options, MethodError if the grid meets no surface.
-inline constexpr int kMostNodes = 320;
+inline constexpr int kMostNodes = 256;
 DensityPtr<3> makeDensity(const implicit::ImplicitFunction& f, const DensityOptions& options, double cellSize,
                           const RunContext& context);
 // The same in the plane; depth is exact. Throws UsageError for DensityKind::curvature: straight edges have none.
