@@ -15,9 +15,9 @@ namespace {
 
 // L-BFGS with 7 pairs: more gain nothing and cost memory.
 constexpr int kRank = 7;
-// A line search has failed if it took more evaluations than this (Ceres then starts anew along the gradient, which near
-// a minimum helps only for a few steps), for want of an exact gradient if rms‖cᵢ − xᵢ‖/h is at most that.
-constexpr int kMostSearchEvaluations = 20;
+// A line search that took so many evaluations, the most that Ceres allows it, has failed; for want of an exact gradient
+// if rms‖cᵢ − xᵢ‖/h is at most that.
+constexpr int kFailedSearch = 20;
 constexpr double kSearchlessRange = 5e-3;
 
 // The energy as Ceres sees it: in units of the mean cell, on y = √2·(x − center)/h, so that E/(m̄h²) has the gradient
@@ -131,8 +131,7 @@ class AcceptedStep final : public ceres::IterationCallback {
     stop = progress_.accept(state, siteCount_);
     wantsReseed = !stop && mayReseed_ && state.emptyCells > 0;
     const int evaluations = progress_.summary().evaluations;
-    const bool searchFailed =
-        evaluations - lastEvaluations_ > kMostSearchEvaluations && state.rmsMove <= kSearchlessRange;
+    const bool searchFailed = evaluations - lastEvaluations_ >= kFailedSearch && state.rmsMove <= kSearchlessRange;
     lastEvaluations_ = evaluations;
     return stop || wantsReseed || searchFailed ? ceres::SOLVER_TERMINATE_SUCCESSFULLY : ceres::SOLVER_CONTINUE;
   }
