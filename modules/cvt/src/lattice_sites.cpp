@@ -3,8 +3,11 @@
 #include <cstdlib>
 #include <limits>
 #include <numbers>
+#include <string>
+#include <utility>
 
 #include "site_candidates.hpp"
+#include "voroform/core/error.hpp"
 #include "voroform/core/random.hpp"
 #include "voroform/cvt/initial_sites.hpp"
 
@@ -15,16 +18,18 @@ namespace {
 template <int M>
 using Mat = Eigen::Matrix<double, M, M>;
 
-// Placements whose energy is evaluated: as many as there are sites to this number, within limits. In space an
-// evaluation costs five times as much.
+// Placements tried: as many as their sites, and a part of the points counted for them, come to this number, within
+// limits. In space an evaluation of the energy costs several times as much.
 template <int M>
-constexpr std::size_t kEvaluatedSites = M == 2 ? 1'000'000 : 200'000;
+constexpr double kPlacedSites = M == 2 ? 1'000'000 : 200'000;
+constexpr double kCountedPart = 0.125;
 constexpr std::size_t kFewestPlacements = 4;
 constexpr std::size_t kMostPlacements = 96;
-// The first guess of the spacing errs by less than this; steps by which that is widened; halvings of it.
+// The first guess of the spacing errs by less than this; steps by which that is widened, and narrowed again.
 constexpr double kSpacingError = 0.03;
-constexpr int kWidenings = 40;
-constexpr int kHalvings = 40;
+constexpr double kWidening = 0.1;
+constexpr int kWidenings = 6;
+constexpr int kNarrowings = 48;
 // Ranges of exact spacings below this share of the error are not looked for.
 constexpr double kLeastRange = 0.05;
 // Near the axes' directions: tilts up to this angle, in radians.
@@ -180,11 +185,17 @@ class PlacedLattice {
   void search(double guess) {
     double dense = guess * (1 - kSpacingError);
     double loose = guess * (1 + kSpacingError);
-    for (int step = 0; step < kWidenings && excessAt(dense) < 0; ++step) dense *= 1 - kSpacingError;
-    for (int step = 0; step < kWidenings && excessAt(loose) > 0; ++step) loose *= 1 + kSpacingError;
-    for (int step = 0; step < kHalvings && bestExcess_ != 0; ++step) {
-      const double middle = 0.5 * (dense + loose);
-      (excessAt(middle) > 0 ? dense : loose) = middle;
+    std::ptrdiff_t more = excessAt(dense);
+    std::ptrdiff_t fewer = excessAt(loose);
+    for (int step = 0; step < kWidenings && more < 0; ++step) more = excessAt(dense *= 1 - kWidening);
+    for (int step = 0; step < kWidenings && fewer > 0; ++step) fewer = excessAt(loose *= 1 + kWidening);
+    for (int step = 0; step < kNarrowings && more > 0 && fewer < 0 && bestExcess_ != 0; ++step) {
+      // Where a straight line through both counts has the wanted one; every other time halfway, lest one end stay.
+      const double share = step % 2 != 0 ? 0.5 : static_cast<double>(more) / static_cast<double>(more - fewer);
+      const double between = dense + share * (loose - dense);
+      const std::ptrdiff_t excess = excessAt(between);
+      (excess > 0 ? dense : loose) = between;
+      (excess > 0 ? more : fewer) = excess;
     }
     if (bestExcess_ == 0) best_ = 0.5 * (lastExact(best_, 1 - kSpacingError) + lastExact(best_, 1 + kSpacingError));
   }
@@ -212,14 +223,14 @@ class PlacedLattice {
 };
 
 // The energy of the sites moved to the centroids of their cells, the cells unchanged: closer to what the optimization
-// will make of them than their own.
+// will make of them than their own. Relative to the volume that the cells fill, as caps may miss thin parts.
 template <int M>
 double centroidalEnergy(const Evaluation<M>& evaluation) {
   double energy = evaluation.energy;
   for (const voronoi::Moments<M>& cell : evaluation.moments) {
     if (cell.mass > 0) energy -= cell.first.squaredNorm() / cell.mass;
   }
-  return energy;
+  return energy / optimalEnergy<M>(static_cast<Index>(evaluation.moments.size()), evaluation.volume);
 }
 
 }  // namespace
@@ -228,11 +239,17 @@ template <int M>
 std::vector<Vec<M>> latticeSites(const Domain<M>& domain, Index count, std::uint64_t seed, const RunContext& context) {
   const auto wanted = static_cast<std::size_t>(count);
   const double spacing = std::pow(domain.volume() / static_cast<double>(count), 1.0 / M);
-  const std::size_t placements = std::clamp(kEvaluatedSites<M> / wanted, kFewestPlacements, kMostPlacements);
+  const double points = domain.bounds().volume() / std::pow(spacing, M);
+  if (!(points < static_cast<double>(mostCandidates(wanted)))) {
+    throw MethodError("a lattice with " + std::to_string(count) + " points inside would have more than " +
+                      std::to_string(mostCandidates(wanted)) + " in the form's bounds: the solid is empty or too thin");
+  }
+  const auto placements = std::clamp(static_cast<std::size_t>(kPlacedSites<M> / (count + kCountedPart * points)),
+                                     kFewestPlacements, kMostPlacements);
   std::vector<Vec<M>> best;
   std::size_t leastMiss = std::numeric_limits<std::size_t>::max();
   double leastEnergy = std::numeric_limits<double>::infinity();
-  for (std::size_t k = 0; k < placements; ++k) {
+  for (std::size_t k = 0; k < placements && (k < kFewestPlacements || !best.empty()); ++k) {
     const Placement<M> placed = placement<M>(seed, k);
     PlacedLattice<M> lattice(domain, spacing, wanted, placed, context);
     const auto miss = static_cast<std::size_t>(std::abs(lattice.excess()));
@@ -247,7 +264,10 @@ std::vector<Vec<M>> latticeSites(const Domain<M>& domain, Index count, std::uint
       best = std::move(sites);
     }
   }
-  if (best.empty()) throwTooThin(mostCandidates(wanted), 0, wanted);
+  if (best.empty()) {
+    throw MethodError("no lattice has a point inside where " + std::to_string(count) +
+                      " are wanted: the solid is empty or too thin; check the form or its envelope");
+  }
   return best;
 }
 
