@@ -80,6 +80,15 @@ CLI::Validator someOf(const std::string& thing, const std::vector<std::string>& 
   return validator;
 }
 
+constexpr cvt::DensityKind kDensities[] = {cvt::DensityKind::constant, cvt::DensityKind::boundary,
+                                           cvt::DensityKind::curvature};
+
+std::vector<std::string> densityNames() {
+  std::vector<std::string> names;
+  for (const auto kind : kDensities) names.emplace_back(cvt::toString(kind));
+  return names;
+}
+
 std::vector<std::string> formatNames() {
   std::vector<std::string> names;
   for (const auto format : kFormats) names.emplace_back(pipeline::toString(format));
@@ -202,6 +211,20 @@ void addSiteOptions(CLI::App& command, Settings& settings) {
       .add_option("--relative-error", settings.relativeError,
                   "Stop when the energy is within this share of its optimum; 0: never")
       ->check(inRange(0.0, 1e9))
+      ->capture_default_str();
+  command
+      .add_option("--density", settings.density,
+                  "Where cells are to be small: nowhere, at the boundary, or where the surface is curved most")
+      ->check(oneOf(densityNames()))
+      ->capture_default_str();
+  command.add_option("--density-ratio", settings.densityRatio, "Size of the largest cells relative to the smallest")
+      ->check(inRange(1.0, cvt::Density<3>::kMostRatio))
+      ->capture_default_str();
+  command
+      .add_option("--density-width", settings.densityWidth,
+                  "Of the boundary density: depth at which cells reach their full size, in the input's units; 0: 4 "
+                  "mean cell sizes")
+      ->check(inRange(0.0, 1e300))
       ->capture_default_str();
 }
 
@@ -394,6 +417,16 @@ cvt::SiteOptions siteOptions(const Settings& settings) {
   return options;
 }
 
+cvt::DensityOptions densityOptions(const Settings& settings) {
+  cvt::DensityOptions options;
+  for (const auto kind : kDensities) {
+    if (settings.density == cvt::toString(kind)) options.kind = kind;
+  }
+  options.ratio = settings.densityRatio;
+  options.width = settings.densityWidth;
+  return options;
+}
+
 pipeline::WriteOptions writeOptions(const Settings& settings) {
   pipeline::WriteOptions options;
   for (const std::string& name : split(settings.formats)) {
@@ -404,6 +437,7 @@ pipeline::WriteOptions writeOptions(const Settings& settings) {
   options.threads = effectiveThreads(settings);
   cvt::TessellateOptions& cvt = options.tessellate;
   static_cast<cvt::SiteOptions&>(cvt) = siteOptions(settings);
+  cvt.density = densityOptions(settings);
   const pipeline::CvtMethod method = pipeline::cvtMethod(settings.method);
   cvt.cap = method.cap;
   cvt.fit = method.fit || settings.fit;

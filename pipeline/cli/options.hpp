@@ -46,6 +46,9 @@ struct Settings {
   int perturbations = 200;
   double convergence = 5e-4;
   double gradientTolerance = 0;
+  std::string density = "constant";
+  double densityRatio = cvt::DensityOptions().ratio;
+  double densityWidth = 0;
   std::string rootFinder = "itp";
   double relativeError = 0;
   std::string formats;
@@ -100,6 +103,7 @@ void requireFormOptions(const Settings& settings, const CLI::App& command);
 // distance to a mesh, which is closed; a number of samples for anything but a mesh's Poisson form.
 void requireMeaning(const pipeline::Form& form, const CLI::App& command);
 cvt::SiteOptions siteOptions(const Settings& settings);
+cvt::DensityOptions densityOptions(const Settings& settings);
 pipeline::WriteOptions writeOptions(const Settings& settings);
 pipeline::CompareOptions compareOptions(const Settings& settings);
 // The parts of a list separated by commas, without spaces around them.
