@@ -53,6 +53,10 @@ Json siteOptionsJson(const cvt::SiteOptions& options) {
           {"relative_error", options.relativeError}};
 }
 
+Json densityJson(const cvt::DensityOptions& options) {
+  return {{"kind", cvt::toString(options.kind)}, {"ratio", options.ratio}, {"width", options.width}};
+}
+
 Json hierarchyJson(const std::vector<cvt::HierarchyLevel>& levels) {
   Json json = Json::array();
   for (const cvt::HierarchyLevel& level : levels) {

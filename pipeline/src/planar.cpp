@@ -1,6 +1,7 @@
 #include "voroform/pipeline/planar.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <string_view>
 #include <utility>
 
@@ -133,7 +134,9 @@ PlanarResult tessellatePlanar(const PlanarInput& input, const PlanarOptions& opt
   PlanarResult result;
   const RunContext recording = recordWarnings(context, result.warnings);
   Stopwatch watch;
-  const cvt::PlanarDomain domain(input.region);
+  cvt::PlanarDomain domain(input.region);
+  const double cellSize = std::sqrt(input.region.area() / options.sites);
+  domain.setDensity(cvt::makeDensity(input.region, options.density, cellSize));
   cvt::OptimizedSites<2> optimized = cvt::optimizeSites<2>(domain, options.given, options, recording);
   result.summary = std::move(optimized.summary);
   const voronoi::PlanarDiagram diagram = voronoi::buildPlanarDiagram(optimized.sites, domain.siteBox(), recording);

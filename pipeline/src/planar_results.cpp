@@ -14,6 +14,12 @@ Json regionJson(const mesh::PlanarRegion& region) {
   return {{"area", region.area()}, {"rings", region.ringCount()}, {"holes", holes}, {"points", region.points().size()}};
 }
 
+Json planarOptionsJson(const PlanarOptions& options) {
+  Json json = siteOptionsJson(options);
+  json["density"] = densityJson(options.density);
+  return json;
+}
+
 Json planarCountsJson(const PlanarResult& result) {
   const mesh::PlanarTessellation& tessellation = result.tessellation;
   std::size_t boundaryEdges = 0;
@@ -60,7 +66,7 @@ Json planarMetricsJson(const PlanarInput& input, const PlanarResult& result, con
   Json json = {{"schema", kMetricsSchema},
                {"dimension", 2},
                {"input", inputJson(input.record)},
-               {"options", siteOptionsJson(options.tessellate)},
+               {"options", planarOptionsJson(options.tessellate)},
                {"versions", versionsJson()},
                {"seed", options.tessellate.seed},
                {"threads", options.threads},

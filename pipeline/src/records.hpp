@@ -42,6 +42,7 @@ Json validityJson(const mesh::Certificate& certificate);
 void setMeasuredFidelity(Json& fidelity, const metrics::Fidelity& measured, bool hasCloud);
 Json regularityJson(const metrics::Regularity& regularity);
 Json siteOptionsJson(const cvt::SiteOptions& options);
+Json densityJson(const cvt::DensityOptions& options);
 Json energyJson(const cvt::OptimizeSummary& summary);
 // The coarser levels of hierarchical sites, but for their seconds.
 Json hierarchyJson(const std::vector<cvt::HierarchyLevel>& levels);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "voroform/core/run_context.hpp"
+#include "voroform/cvt/density.hpp"
 #include "voroform/cvt/optimized_sites.hpp"
 #include "voroform/mesh/planar_moments.hpp"
 #include "voroform/mesh/planar_region.hpp"
@@ -37,6 +38,8 @@ std::vector<Vec2> readPlanarSites(const std::filesystem::path& path, const mesh:
 struct PlanarOptions : cvt::SiteOptions {
   // Initial sites for Initialization::given.
   std::vector<Vec2> given;
+  // Where cells are to be small; not by curvature, which polygons do not have.
+  cvt::DensityOptions density;
   // Memory the run may take, in bytes; a larger estimate throws EnvironmentError before anything is allocated. 0:
   // usableMemory().
   std::uint64_t memoryLimit = 0;
