@@ -73,8 +73,8 @@ Sequence<M> firstSequence(const Domain<M>& domain, std::size_t count, std::uint6
   for (Index axis = 0; axis < M; ++axis) {
     sequence.shift[axis] = randomUnit(seed, RandomStream::hammersley, M * shift + static_cast<std::uint64_t>(axis));
   }
-  const double share = std::max(domain.volume() / sequence.box.volume(), 1.0 / static_cast<double>(mostCandidates(1)));
-  sequence.length = std::max<std::size_t>(1, static_cast<std::size_t>(std::lround(static_cast<double>(count) / share)));
+  const double length = static_cast<double>(count) * sequence.box.volume() / domain.volume();
+  sequence.length = static_cast<std::size_t>(std::clamp(length, 1.0, static_cast<double>(mostCandidates(count))));
   return sequence;
 }
 
