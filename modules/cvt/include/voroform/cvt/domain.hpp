@@ -7,6 +7,7 @@
 #include <span>
 #include <vector>
 
+#include "voroform/core/error.hpp"
 #include "voroform/core/run_context.hpp"
 #include "voroform/core/types.hpp"
 #include "voroform/voronoi/site_moments.hpp"
@@ -48,6 +49,15 @@ class Domain {
   virtual double siteDensity(const Vec<M>& p) const { return static_cast<void>(p), 1.0; }
   // The energy of the sites. They must be distinct and inside siteBox(): MethodError otherwise.
   virtual Evaluation<M> evaluate(std::span<const Vec<M>> sites, const RunContext& context) const = 0;
+  // The energy when the domain is grown by a layer of this thickness, at least 0, on its boundary: each cell's piece of
+  // the boundary is swept outward along its normal, which leaves gaps at convex edges and overlaps at concave ones.
+  // With a density the layer continues that of the boundary, and the thickness is that where sites lie most densely,
+  // elsewhere in proportion to their spacing. Throws as evaluate does, MethodError if the domain cannot grow.
+  virtual Evaluation<M> evaluateGrown(std::span<const Vec<M>> sites, double thickness,
+                                      const RunContext& context) const {
+    static_cast<void>(sites), static_cast<void>(thickness), static_cast<void>(context);
+    throw MethodError("this domain cannot grow: matched subdivisions are not for it");
+  }
   // Throws as evaluate does.
   virtual SiteGraph graph(std::span<const Vec<M>> sites, const RunContext& context) const = 0;
 };

@@ -27,6 +27,7 @@ class ImplicitDomain final : public Domain<3> {
   double volume() const override;
   double siteDensity(const Vec3& p) const override { return density_ ? density_->siteDensity(p) : 1; }
   Evaluation<3> evaluate(std::span<const Vec3> sites, const RunContext& context) const override;
+  Evaluation<3> evaluateGrown(std::span<const Vec3> sites, double thickness, const RunContext& context) const override;
   SiteGraph graph(std::span<const Vec3> sites, const RunContext& context) const override;
 
  private:

@@ -23,6 +23,7 @@ class PlanarDomain final : public Domain<2> {
   double volume() const override { return region_.area(); }
   double siteDensity(const Vec2& p) const override { return density_ ? density_->siteDensity(p) : 1; }
   Evaluation<2> evaluate(std::span<const Vec2> sites, const RunContext& context) const override;
+  Evaluation<2> evaluateGrown(std::span<const Vec2> sites, double thickness, const RunContext& context) const override;
   SiteGraph graph(std::span<const Vec2> sites, const RunContext& context) const override;
 
  private:
