@@ -229,12 +229,13 @@ TEST(DensityCvt, ConvergesAsFastAsAUniformOne) {
   OptimizeOptions options;
   options.iterations = 10;
   options.convergence = 0;
-  auto sites = randomSites<3>(domain, 1500, 1, {});
+  auto sites = randomSites<3>(domain, 4000, 1, {});
   const double uniform = optimize<3>(domain, sites, options, {}).iterations.back().rmsMove;
-  domain.setDensity(makeDensity(*form, {DensityKind::boundary, 3, 0}, std::cbrt(domain.volume() / 1500), {}));
-  sites = randomSites<3>(domain, 1500, 1, {});
+  domain.setDensity(makeDensity(*form, {DensityKind::boundary, 3, 0}, std::cbrt(domain.volume() / 4000), {}));
+  sites = randomSites<3>(domain, 4000, 1, {});
   const double graded = optimize<3>(domain, sites, options, {}).iterations.back().rmsMove;
-  EXPECT_LT(graded, 1.5 * uniform);
+  // 1.18 times; 1.5 times if all coordinates had one unit.
+  EXPECT_LT(graded, 1.35 * uniform);
 }
 
 TEST(DensityCvt, IsTheSameBitsForAnyNumberOfThreads) {
