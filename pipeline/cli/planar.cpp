@@ -19,6 +19,7 @@ pipeline::PlanarOptions planarOptions(const Settings& settings, const mesh::Plan
                                       const RunContext& context) {
   pipeline::PlanarOptions options;
   static_cast<cvt::SiteOptions&>(options) = siteOptions(settings);
+  options.density = densityOptions(settings);
   options.memoryLimit = settings.memoryLimit;
   if (options.initialization == cvt::Initialization::given) {
     options.given = pipeline::readPlanarSites(settings.initialization, region, context);

@@ -17,6 +17,7 @@ Json optionsJson(const FormRecord& form, const WriteOptions& options) {
   const cvt::TessellateOptions& cvt = options.tessellate;
   Json json = {{"method", toString(CvtMethod{cvt.cap, cvt.fit})}};
   json.update(siteOptionsJson(cvt));
+  json["density"] = densityJson(cvt.density);
   json.update(Json{{"root_finder", toString(cvt.rootFinder)},
                    {"envelope", toString(form.envelope)},
                    {"margin", form.margin},

@@ -117,6 +117,16 @@ TEST_F(Planar, EveryInitializationFillsTheRegion) {
   }
 }
 
+TEST_F(Planar, CellsGradedByADensity) {
+  const auto folder =
+      made("graded", "shape2d:disc", {"--sites", "300", "--density", "boundary", "--density-ratio", "2"});
+  const auto metrics = readJson(folder / "metrics.json");
+  EXPECT_EQ(metrics["options"]["density"]["kind"], "boundary");
+  EXPECT_EQ(metrics["options"]["density"]["ratio"], 2);
+  const auto uniform = readJson(made("uniform", "shape2d:disc", {"--sites", "300"}) / "metrics.json");
+  EXPECT_GT(metrics["counts"]["boundary_cells"].get<int>(), 1.2 * uniform["counts"]["boundary_cells"].get<int>());
+}
+
 TEST_F(Planar, RegionsWithHolesAndParts) {
   // Few sites, so that a cell has the hole within it or holds parts of both polygons.
   const auto folder = made("few", folder_.write("holes.wkt", kHoles), {"--sites", "1", "--iterations", "0"});
@@ -174,6 +184,7 @@ TEST_F(Planar, MistakesOfUsage) {
       {{"tessellate", corner, "-o", out, "--root-finder", "itp"}, "--root-finder: has no meaning"},
       {{"tessellate", corner, "-o", out, "--no-accuracy"}, "--no-accuracy: has no meaning"},
       {{"tessellate", corner, "-o", out, "--as", "points"}, "--as: has no meaning"},
+      {{"tessellate", corner, "-o", out, "--density", "curvature"}, "a polygon's edges are straight"},
       {{"tessellate", corner, "-o", out, "--sites", "0"}, "--sites"},
       {{"reconstruct", corner, "-o", out}, "is a region of the plane; reconstruct is for solids"},
       {{"compare", "shape2d:square", "-o", out}, "is a region of the plane; compare is for solids"},
