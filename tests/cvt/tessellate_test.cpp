@@ -204,7 +204,7 @@ TEST(Tessellate, FlatCellsCountAsEmpty) {
 TEST(Tessellate, ReseedingRecoversCells) {
   const auto form = implicit::gyroidBall();
   TessellateOptions options;
-  options.sites = 600;
+  options.sites = 200;
   options.iterations = 12;
   Index with = 0;
   Index without = 0;
@@ -216,6 +216,23 @@ TEST(Tessellate, ReseedingRecoversCells) {
     without += tessellate(*form, {}, options, {}).summary.emptySites;
   }
   EXPECT_LT(with, without);
+}
+
+TEST(Tessellate, WithoutASiteThatHasNoCellItsNeighborReachesFurther) {
+  // The site at x = 0.7 is alone in the end of a thin ellipsoid: no edge of the diagram meets that.
+  const auto form = implicit::ellipsoid(Vec3(1, 0.1, 0.1));
+  OptimizedSites optimized;
+  for (std::uint64_t i = 0; optimized.sites.size() < 150; ++i) {
+    const Vec3 p = randomInBox(1, RandomStream::test, i, form->bounds());
+    if (p.x() < 0.3 && form->value(p) < 0) optimized.sites.push_back(p);
+  }
+  optimized.sites.emplace_back(0.7, 0, 0);
+  const TessellateResult result = tessellateSites(optimized, *form, {}, {}, {});
+  EXPECT_GE(result.summary.emptySites, 1);
+  EXPECT_EQ(result.complex.cellCount + result.summary.emptySites, 151);
+  double farthest = 0;
+  for (const Vec3& vertex : result.complex.vertices) farthest = std::max(farthest, vertex.x());
+  EXPECT_GT(farthest, 0.9);
 }
 
 TEST(Tessellate, AFewSitesAreNoError) {

@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "support/voronoi_sites.hpp"
@@ -98,6 +99,64 @@ TEST(ThinParts, SheetOfHalfTheCellSizeIsNotLost) {
       EXPECT_GT(certificate.volume, 0.82 * 4 * thickness);
       EXPECT_GE(result.complex.cellCount, static_cast<Index>(0.97 * kSites));
       EXPECT_GT(result.clipped.summary.multiLoopCells, static_cast<Index>(kSites) / 2);
+    }
+  }
+}
+
+TEST(ThinParts, SheetIsKeptUpToItsRim) {
+  // Beyond the last edges that meet it the sheet goes on within the facets of neighbors at the rim, up to where it
+  // ends.
+  constexpr int kSide = 12;
+  constexpr double kThickness = 0.04;
+  const auto form = sheet(kThickness);
+  const auto sites = sheetSites(kSide, 1);
+  const auto flat = testing::tessellateSites(sites, *form, {.cap = CapKind::flat});
+  Index atRim = 0;
+  for (std::size_t i = 0; i < flat.clipped.chordPointFacets.size(); ++i) {
+    const Vec3 p = kRotation.transpose() * flat.clipped.points[static_cast<std::size_t>(flat.clipped.rootCount) + i];
+    const double side = std::max(std::abs(p.x()), std::abs(p.y()));
+    EXPECT_LT(std::min(std::abs(side - 1), std::abs(std::abs(p.z()) - 0.5 * kThickness)), 1e-9) << "not on the surface";
+    if (std::abs(side - 1) < 1e-9) ++atRim;
+  }
+  EXPECT_GE(atRim, 4 * (kSide - 2));
+  for (const CapKind cap : kCaps) {
+    const auto result = testing::tessellateSites(sites, *form, {.cap = cap});
+    const mesh::Certificate certificate = mesh::validate(result.complex, {}, {});
+    EXPECT_THAT(certificate.problems, IsEmpty());
+  }
+}
+
+// A cone with its tip at (0, 0, 1) and slope 1/4, down to z = −1, turned.
+class Cone final : public implicit::ImplicitFunction {
+ public:
+  double value(const Vec3& p) const override {
+    const Vec3 q = kRotation.transpose() * p;
+    return std::max(std::hypot(q.x(), q.y()) - 0.25 * (1 - q.z()), -1 - q.z());
+  }
+  Vec3 gradient(const Vec3& p) const override {
+    const Vec3 q = kRotation.transpose() * p;
+    return kRotation * Vec3(q.x(), q.y(), 0.25 * std::hypot(q.x(), q.y())).normalized();
+  }
+  Box3 bounds() const override { return {Vec3::Constant(-1.2), Vec3::Constant(1.2)}; }
+};
+
+TEST(ThinParts, CapsReachTheTipOfACone) {
+  // One cell holds the end of the cone from about z = −0.1 on, and no edge of the diagram meets it beyond.
+  const Cone form;
+  const Vec3 tip = kRotation * Vec3(0, 0, 1);
+  for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
+    auto sites = testing::sitesInside(form, 300, seed);
+    sites.erase(std::remove_if(sites.begin(), sites.end(),
+                               [](const Vec3& p) { return (kRotation.transpose() * p).z() > -0.2; }),
+                sites.end());
+    sites.emplace_back(0, 0, 0);
+    for (const CapKind cap : {CapKind::cvt2, CapKind::cvt3}) {
+      const auto result = testing::tessellateSites(sites, form, {.cap = cap});
+      const mesh::Certificate certificate = mesh::validate(result.complex, {}, {});
+      EXPECT_THAT(certificate.problems, IsEmpty());
+      double nearest = 1;
+      for (const Vec3& vertex : result.complex.vertices) nearest = std::min(nearest, (vertex - tip).norm());
+      EXPECT_LT(nearest, 0.03) << "seed " << seed;
     }
   }
 }

@@ -3,11 +3,13 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <optional>
 #include <string>
 
 #include "facet_frame.hpp"
 #include "projection.hpp"
+#include "thin_parts.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/parallel.hpp"
 
@@ -25,6 +27,10 @@ constexpr double kFirstStep = 0.1;
 constexpr double kBorderShare = 1e-3;
 // A cap over a loop in a facet's plane encloses a volume if its point is at least this high, in units of the radius.
 constexpr double kPlanarHeight = 1e-6;
+// Where S is higher than kTall over a loop, or not met, the cell may hold the end of a thin part. Its tip is searched;
+// what is farther than kLong is one. In units of the loop's width.
+constexpr double kTall = 0.5;
+constexpr double kLong = 1.5;
 // Where caps of one cell cross, their points are tried at these heights over the loops' centroids, in units of radius.
 constexpr double kOtherHeights[] = {0.0, 0.1, -0.1, 0.25, -0.25, 0.5, -0.5, 0.75, -0.75};
 
@@ -35,6 +41,7 @@ struct LoopFrame {
   Vec3 centroid;
   Vec3 normal;  // unit, out of the solid; zero if the loop encloses no area
   double radius;
+  double width;  // radius of a disk of its vector area: what reaches out of the loop's plane does not add to it
 };
 
 // A cap in the making: its apex, if it is a fan, and its triangles; the apex is numbered kNone. A cap may instead fall
@@ -81,7 +88,7 @@ class CellCapper {
   const Vec3& position(Index point) const { return clipped_.position(diagram_, point); }
 
   LoopFrame frameOf(std::span<const Index> loop) const {
-    LoopFrame frame{Vec3::Zero(), Vec3::Zero(), 0};
+    LoopFrame frame{Vec3::Zero(), Vec3::Zero(), 0, 0};
     for (const Index point : loop) frame.centroid += position(point);
     frame.centroid /= static_cast<double>(loop.size());
     Vec3 previous = position(loop.back()) - frame.centroid;
@@ -92,6 +99,7 @@ class CellCapper {
       previous = current;
     }
     const double area = frame.normal.norm();
+    frame.width = std::sqrt(area / (2 * std::numbers::pi));
     frame.normal = area > 0 ? Vec3(frame.normal / area) : Vec3(Vec3::Zero());
     if (options_.cap == CapKind::cvt2 || options_.cap == CapKind::cvt3) frame.centroid = centroidByArea(loop, frame);
     return frame;
@@ -202,6 +210,11 @@ class CellCapper {
 
   Vec3 projected(const LoopFrame& frame) {
     const std::optional<double> height = projection(frame);
+    if (!height || *height > kTall * frame.width) {
+      const TipSearch search{frame.centroid, frame.normal, frame.width, kLong * frame.width,
+                             [&](const Vec3& direction) { return reachInCell(frame.centroid, direction); }};
+      if (const auto tip = findTip(search, f_, options_, chunk_.summary.evaluations)) return *tip;
+    }
     if (!height) ++chunk_.summary.unprojectedPoints;
     return frame.centroid + height.value_or(0.0) * frame.normal;
   }

@@ -7,6 +7,7 @@
 #include "facet_clipping.hpp"
 #include "facet_frame.hpp"
 #include "projection.hpp"
+#include "thin_parts.hpp"
 #include "voroform/core/parallel.hpp"
 
 namespace voroform::voronoi {
@@ -19,6 +20,10 @@ constexpr double kFirstStep = 0.05;
 // The search goes no farther than this, in units of the chord's half length (twice the loop's radius is the rule for
 // caps; a chord is a loop's piece).
 constexpr double kReach = 2;
+// Where S is higher than kTall over a chord, or not met, the facet may cut the end of a thin part. Its tip is searched;
+// what is farther than kLong is one. In units of the chord's length.
+constexpr double kTall = 0.25;
+constexpr double kLong = 0.75;
 // Points keep this share of the way to the facet's border clear, so that they stay inside the facet.
 constexpr double kBorderShare = 1e-3;
 
@@ -51,6 +56,9 @@ class FacetChords {
     ray.inward = std::min(reach, (1 - kBorderShare) * reachInFacet(corners_, frame_(middle), -out));
     const std::optional<double> distance =
         projectOnSurface(f, ray, kFirstStep * length, options.rootTolerance * length, options.rootFinder, evaluations);
+    if (!distance || *distance > kTall * length) {
+      if (const auto tip = findTip(chord, middle, length, f, options, evaluations)) return tip;
+    }
     if (!distance) return std::nullopt;
     return middle + *distance * ray.direction;
   }
@@ -58,6 +66,21 @@ class FacetChords {
   Eigen::Vector2d inPlane(const Vec3& p) const { return frame_(p); }
 
  private:
+  // The farthest that the solid reaches within the facet beyond the chord, if that is far.
+  std::optional<Vec3> findTip(const Chord& chord, const Vec3& middle, double length,
+                              const implicit::ImplicitFunction& f, const ClipOptions& options,
+                              std::int64_t& evaluations) const {
+    std::optional<Vec3> tip;
+    double farthest = kLong * length;
+    for (const Vec3& point : facetTongue(diagram_, chord.facet, clipped_.position(diagram_, chord.enter),
+                                         clipped_.position(diagram_, chord.leave), f, options, evaluations)) {
+      if (!((point - middle).norm() > farthest)) continue;
+      farthest = (point - middle).norm();
+      tip = point;
+    }
+    return tip;
+  }
+
   const Diagram& diagram_;
   const ClippedDiagram& clipped_;
   FacetFrame frame_;
@@ -91,7 +114,10 @@ std::vector<FacetRange> facetRanges(const ClippedDiagram& clipped) {
 
 // Chords along a diagram edge (S leaves the solid and enters it again on the same edge) stay straight: their facet is
 // not the only one they belong to.
-bool onOneEdge(const ClippedDiagram& clipped, const Chord& chord) {
+bool staysStraight(const ClippedDiagram& clipped, const Chord& chord) {
+  // A tongue's border has points enough.
+  const std::size_t afterRoots = clipped.inside.size() + static_cast<std::size_t>(clipped.rootCount);
+  if (static_cast<std::size_t>(std::max(chord.leave, chord.enter)) >= afterRoots) return true;
   const auto root = [&](Index point) {
     return clipped.rootSites[static_cast<std::size_t>(point) - clipped.inside.size()];
   };
@@ -109,7 +135,7 @@ void walkPolygon(const ClippedDiagram& clipped, const FacetRange& range, std::si
     const Index next = polygon[(k + 1) % polygon.size()];
     for (std::size_t c = range.chordBegin; c < range.chordEnd; ++c) {
       if (clipped.chords[c].leave == polygon[k] && clipped.chords[c].enter == next &&
-          !onOneEdge(clipped, clipped.chords[c])) {
+          !staysStraight(clipped, clipped.chords[c])) {
         chordPoint(c);
       }
     }

@@ -18,7 +18,7 @@ ClippedDiagram clip(const Diagram& diagram, const implicit::ImplicitFunction& f,
     clipped.summary.doubleRootEdges = roots.doubleRootEdges;
     clipped.summary.oracleShare = roots.oracleShare;
     clipped.summary.evaluations = roots.evaluations;
-    clipFacets(diagram, roots, f, clipped, context);
+    clipFacets(diagram, roots, f, options, clipped, context);
     clipped.inside = std::move(roots.inside);
   }
   if (options.cap == CapKind::cvt3) addChordPoints(diagram, f, options, clipped, context);

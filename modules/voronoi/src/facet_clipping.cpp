@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <string>
 
+#include "thin_parts.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/parallel.hpp"
 
@@ -24,14 +25,16 @@ struct PolygonChunk {
   std::vector<std::uint32_t> sizes;
   std::vector<Index> points;
   std::vector<Chord> chords;
+  std::vector<Vec3> tonguePoints;  // numbered −1, −2, … in points and chords
+  std::vector<Index> tongueFacets;
   std::int64_t evaluations = 0;
 };
 
 class FacetClipper {
  public:
   FacetClipper(const Diagram& diagram, const EdgeRoots& roots, const implicit::ImplicitFunction& f,
-               ClippedDiagram& clipped)
-      : diagram_(diagram), roots_(roots), f_(f), clipped_(clipped) {}
+               const ClipOptions& options, ClippedDiagram& clipped)
+      : diagram_(diagram), roots_(roots), f_(f), options_(options), clipped_(clipped) {}
 
   void clip(std::size_t begin, std::size_t end, PolygonChunk& chunk) {
     using State = ClippedDiagram::FacetState;
@@ -132,6 +135,7 @@ class FacetClipper {
   void keep(Index facet, PolygonChunk& chunk) {
     const auto loop = diagram_.facet(facet);
     cutIntoStretches(roots_.inside[static_cast<std::size_t>(loop.front())] != 0);
+    if (stretches_.size() == 1 && stretches_[0].points.size() == 2 && keepTongue(facet, chunk)) return;
     if (joined(chunk)) {
       polygon_.clear();
       for (std::size_t k = 0; k < stretches_.size(); ++k) {
@@ -148,6 +152,24 @@ class FacetClipper {
     }
   }
 
+  // The border holds one stretch of one edge: the solid may go on within the facet.
+  bool keepTongue(Index facet, PolygonChunk& chunk) {
+    polygon_ = stretches_[0].points;
+    const std::vector<Vec3> tongue =
+        facetTongue(diagram_, facet, position(polygon_[0]), position(polygon_[1]), f_, options_, chunk.evaluations);
+    if (tongue.empty()) return false;
+    for (const Vec3& point : tongue) {
+      chunk.tonguePoints.push_back(point);
+      chunk.tongueFacets.push_back(facet);
+      polygon_.push_back(-static_cast<Index>(chunk.tonguePoints.size()));
+    }
+    for (std::size_t k = 1; k < polygon_.size(); ++k) {
+      chunk.chords.push_back({polygon_[k], polygon_[(k + 1) % polygon_.size()], facet});
+    }
+    addPolygon(facet, polygon_, chunk);
+    return true;
+  }
+
   // A polygon of two points (both roots of one edge) has no area; its chord stays, so that the cell's loop closes.
   static void addPolygon(Index facet, const std::vector<Index>& points, PolygonChunk& chunk) {
     if (points.size() < 3) return;
@@ -159,6 +181,7 @@ class FacetClipper {
   const Diagram& diagram_;
   const EdgeRoots& roots_;
   const implicit::ImplicitFunction& f_;
+  const ClipOptions& options_;
   ClippedDiagram& clipped_;
   std::vector<Index> border_;
   std::vector<Stretch> stretches_;
@@ -168,15 +191,27 @@ class FacetClipper {
 }  // namespace
 
 void clipFacets(const Diagram& diagram, const EdgeRoots& roots, const implicit::ImplicitFunction& f,
-                ClippedDiagram& clipped, const RunContext& context) {
+                const ClipOptions& options, ClippedDiagram& clipped, const RunContext& context) {
   const std::size_t count = diagram.facetSites.size();
   clipped.facetStates.resize(count);
   std::vector<PolygonChunk> chunks((count + kGrain - 1) / kGrain);
   parallelFor(context, count, kGrain, [&](std::size_t begin, std::size_t end) {
-    FacetClipper(diagram, roots, f, clipped).clip(begin, end, chunks[begin / kGrain]);
+    FacetClipper(diagram, roots, f, options, clipped).clip(begin, end, chunks[begin / kGrain]);
   });
   clipped.polygonOffsets.clear();
-  for (const PolygonChunk& chunk : chunks) {
+  for (PolygonChunk& chunk : chunks) {
+    const Index firstPoint = diagram.vertexCount() + static_cast<Index>(clipped.points.size());
+    const auto number = [firstPoint](Index& point) {
+      if (point < 0) point = firstPoint - point - 1;
+    };
+    for (Index& point : chunk.points) number(point);
+    for (Chord& chord : chunk.chords) {
+      number(chord.leave);
+      number(chord.enter);
+    }
+    clipped.points.insert(clipped.points.end(), chunk.tonguePoints.begin(), chunk.tonguePoints.end());
+    clipped.chordPointFacets.insert(clipped.chordPointFacets.end(), chunk.tongueFacets.begin(),
+                                    chunk.tongueFacets.end());
     clipped.summary.evaluations += chunk.evaluations;
     clipped.polygonFacets.insert(clipped.polygonFacets.end(), chunk.facets.begin(), chunk.facets.end());
     clipped.polygonOffsets.insert(clipped.polygonOffsets.end(), chunk.sizes.begin(), chunk.sizes.end());

@@ -9,7 +9,7 @@ namespace voroform::voronoi {
 // Fills facetStates, the polygons and the chords (without their points) of `clipped`, whose inside, points and
 // rootSites are set.
 void clipFacets(const Diagram& diagram, const EdgeRoots& roots, const implicit::ImplicitFunction& f,
-                ClippedDiagram& clipped, const RunContext& context);
+                const ClipOptions& options, ClippedDiagram& clipped, const RunContext& context);
 
 // Gives each chord the point where S meets its facet's plane (cvt3), inserts it into the facet's polygon, and keeps the
 // polygons simple.
