@@ -186,12 +186,17 @@ TEST(RemoveSites, RemovesTheSmallestCells) {
   removeSites<2>(domain, left, 20, {});
   ASSERT_EQ(left.size(), 380U);
   std::size_t next = 0;
+  std::set<Index> removed;
   for (std::size_t i = 0; i < sites.size(); ++i) {
     if (next < left.size() && left[next] == sites[i]) {
       ++next;
     } else {
+      removed.insert(static_cast<Index>(i));
       EXPECT_LT(moments[i].mass, 0.5 * domain.volume() / 400);
     }
+  }
+  for (const auto& [a, b] : domain.graph(sites, {}).edges) {
+    EXPECT_FALSE(removed.contains(a) && removed.contains(b)) << "neighbors";
   }
   EXPECT_EQ(next, left.size()) << "the order is kept";
   removeSites<2>(domain, left, 379, {});
@@ -212,6 +217,21 @@ TEST(EvaluateGrown, SweepsTheBoundaryOutward) {
   const double along = 20 * (std::pow(10 + t, 3) - 1000) / 3;
   const double across = t * 2000 / 3;
   EXPECT_NEAR(grown.second - plain.second, 4 * (along + across) + 80 * t * site[0].squaredNorm(), 1e-8);
+}
+
+TEST(EvaluateGrown, GivesEachCellItsOwnPieces) {
+  const mesh::PlanarRegion square = mesh::squareRegion();
+  const PlanarDomain domain(square);
+  const std::vector<Vec2> sites = {{-5, 0}, {5, 0}};
+  const double t = 0.5;
+  const auto plain = domain.evaluate(sites, {}).moments;
+  const auto grown = domain.evaluateGrown(sites, t, {}).moments;
+  // The layer on the far side has its centroid t/2 beyond it; those above and below balance.
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_NEAR(grown[i].mass - plain[i].mass, 40 * t, 1e-9);
+    const Vec2 expected(20 * t * (5 + t / 2) * (i == 0 ? -1 : 1), 0);
+    EXPECT_NEAR((grown[i].first - plain[i].first - expected).norm(), 0, 1e-9);
+  }
 }
 
 TEST(EvaluateGrown, GrowsABall) {
@@ -293,6 +313,23 @@ TEST(Hierarchy, MatchedCountsLeaveNextToNothingMissing) {
   const auto missing = [&](SubdivisionRule rule) { return hierarchy<3>(domain, 6000, rule, 1).levels.back().inserted; };
   EXPECT_GT(missing(SubdivisionRule::insertion), 900);
   EXPECT_LT(std::abs(missing(SubdivisionRule::matched)), 120);
+}
+
+TEST(Hierarchy, MatchedLevelsFillTheBoundaryLayer) {
+  const auto form = implicit::torus(1, 0.4);
+  const ImplicitDomain domain(*form);
+  const auto sites = hierarchy<3>(domain, 4000, SubdivisionRule::matched, 1).sites;
+  const auto moments = domain.evaluate(sites, {}).moments;
+  const SiteGraph graph = domain.graph(sites, {});
+  double mass = 0;
+  double cells = 0;
+  for (std::size_t i = 0; i < sites.size(); ++i) {
+    if (graph.onBoundary[i] == 0) continue;
+    mass += moments[i].mass;
+    ++cells;
+  }
+  // Without growth the outermost cells would be half a layer thicker.
+  EXPECT_NEAR(mass / cells, domain.volume() / 4000, 0.1 * domain.volume() / 4000);
 }
 
 double regularityAfter(const Domain<3>& domain, std::vector<Vec3> sites, int iterations) {
