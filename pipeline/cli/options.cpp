@@ -184,8 +184,15 @@ void addSiteOptions(CLI::App& command, Settings& settings) {
       ->capture_default_str();
   command
       .add_option("--subdivisions", settings.subdivisions,
-                  "Of hierarchical sites; the most that their number allows if not given")
+                  "Of hierarchical sites; as many as their number and the rule make sense of if not given")
       ->check(inRange(0, 20));
+  command
+      .add_option(
+          "--subdivision-rule", settings.subdivisionRule,
+          "Whether coarser levels are made so that the finer lattice fits the boundary (matched), or sites that "
+          "subdivision leaves missing are inserted there (insertion, the thesis's)")
+      ->check(oneOf({toString(cvt::SubdivisionRule::matched), toString(cvt::SubdivisionRule::insertion)}))
+      ->capture_default_str();
   command.add_option("--iterations", settings.iterations, "Iterations of the optimizer; 0 clips the initial sites")
       ->check(inRange(0, 1'000'000))
       ->capture_default_str();
@@ -407,6 +414,9 @@ cvt::SiteOptions siteOptions(const Settings& settings) {
   options.sites = settings.sites;
   options.initialization = pipeline::initializationNamed(settings.initialization).value_or(cvt::Initialization::given);
   options.subdivisions = settings.subdivisions.value_or(-1);
+  options.subdivisionRule = settings.subdivisionRule == toString(cvt::SubdivisionRule::insertion)
+                                ? cvt::SubdivisionRule::insertion
+                                : cvt::SubdivisionRule::matched;
   options.iterations = settings.iterations;
   options.optimizer = pipeline::optimizerNamed(settings.optimizer);
   options.perturbations = settings.perturbations;

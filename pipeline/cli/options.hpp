@@ -42,6 +42,7 @@ struct Settings {
   int iterations = 10;
   std::string initialization = "random";  // or a file of sites
   std::optional<int> subdivisions;
+  std::string subdivisionRule = "matched";
   std::string optimizer = "lbfgs";
   int perturbations = 200;
   double convergence = 5e-4;

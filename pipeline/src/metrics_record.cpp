@@ -46,6 +46,7 @@ Json siteOptionsJson(const cvt::SiteOptions& options) {
   return {{"sites", options.sites},
           {"initialization", toString(options.initialization)},
           {"subdivisions", options.subdivisions},
+          {"subdivision_rule", toString(options.subdivisionRule)},
           {"iterations", options.iterations},
           {"optimizer", toString(options.optimizer)},
           {"perturbations", options.perturbations},

@@ -1,5 +1,7 @@
 #include "voroform/cvt/optimized_sites.hpp"
 
+#include <algorithm>
+
 #include "voroform/core/error.hpp"
 #include "voroform/cvt/initial_sites.hpp"
 
@@ -22,7 +24,17 @@ std::vector<Vec<M>> checkedSites(const Domain<M>& domain, std::span<const Vec<M>
 
 template <int M>
 std::vector<Vec<M>> initialSites(const Domain<M>& domain, std::span<const Vec<M>> given, const SiteOptions& options,
-                                 const RunContext& context) {
+                                 const RunContext& context, std::vector<HierarchyLevel>& levels) {
+  const auto hierarchical = [&](bool fromLattice) {
+    HierarchyOptions hierarchy;
+    hierarchy.subdivisions = options.subdivisions;
+    hierarchy.fromLattice = fromLattice;
+    hierarchy.rule = options.subdivisionRule;
+    hierarchy.coarseIterations = std::max(hierarchy.coarseIterations, options.iterations);
+    Hierarchy<M> result = hierarchicalSites(domain, options.sites, hierarchy, options, context);
+    levels = std::move(result.levels);
+    return std::move(result.sites);
+  };
   switch (options.initialization) {
     case Initialization::random:
       return randomSites(domain, options.sites, options.seed, context);
@@ -34,11 +46,14 @@ std::vector<Vec<M>> initialSites(const Domain<M>& domain, std::span<const Vec<M>
       return farthestPointSites(domain, options.sites, options.seed, context);
     case Initialization::greedyEdgeCollapse:
       return greedyEdgeCollapseSites(domain, options.sites, options.seed, context);
+    case Initialization::hierarchicalRandom:
+      return hierarchical(false);
+    case Initialization::hierarchicalLattice:
+      return hierarchical(true);
     case Initialization::given:
       return checkedSites(domain, given);
-    default:
-      throw UsageError("this initialization does not exist yet");
   }
+  throw UsageError("unknown initialization");
 }
 
 }  // namespace
@@ -60,7 +75,7 @@ OptimizedSites<M> optimizeSites(const Domain<M>& domain, std::span<const Vec<M>>
   if (const auto violations = validate(options); !violations.empty()) throw UsageError(violations.front());
   OptimizedSites<M> result;
   Stopwatch watch;
-  result.sites = initialSites(domain, given, options, context);
+  result.sites = initialSites(domain, given, options, context, result.summary.levels);
   result.summary.secondsInitial = watch.seconds();
   if (options.initialization != Initialization::given && static_cast<Index>(result.sites.size()) != options.sites) {
     context.warn("no lattice has " + std::to_string(options.sites) + " sites inside; the nearest that was found has " +

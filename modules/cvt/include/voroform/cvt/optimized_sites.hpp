@@ -28,8 +28,10 @@ struct SiteOptions : OptimizeOptions {
   // Number of sites, at least 1; of no meaning for given ones.
   Index sites = 1000;
   Initialization initialization = Initialization::random;
-  // Of the hierarchical ones: subdivisions, at most mostSubdivisions(); a negative number stands for those.
+  // Of the hierarchical ones; see HierarchyOptions. Each coarser level gets as many iterations as the finest, and 50 at
+  // least.
   int subdivisions = -1;
+  SubdivisionRule subdivisionRule = SubdivisionRule::matched;
 };
 // Every violation of the options, as sentences naming field, value and rule; empty if there is none.
 std::vector<std::string> validate(const SiteOptions& options);
