@@ -221,7 +221,7 @@ TEST(Tessellate, ReseedingRecoversCells) {
 TEST(Tessellate, WithoutASiteThatHasNoCellItsNeighborReachesFurther) {
   // The site at x = 0.7 is alone in the end of a thin ellipsoid: no edge of the diagram meets that.
   const auto form = implicit::ellipsoid(Vec3(1, 0.1, 0.1));
-  OptimizedSites optimized;
+  OptimizedSites<3> optimized;
   for (std::uint64_t i = 0; optimized.sites.size() < 150; ++i) {
     const Vec3 p = randomInBox(1, RandomStream::test, i, form->bounds());
     if (p.x() < 0.3 && form->value(p) < 0) optimized.sites.push_back(p);
