@@ -20,6 +20,7 @@ double difference(const ReproducedFigure& figure) { return figure.ours - figure.
 Json figureJson(const ReproducedFigure& figure) {
   const PublishedFigure& published = figure.published;
   Json json = {{"data_set", published.dataSet},
+               {"sites", published.sites ? Json(*published.sites) : Json(nullptr)},
                {"page", published.page},
                {"method", published.method},
                {"criterion", published.criterion},

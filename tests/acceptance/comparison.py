@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
 import tempfile
 from pathlib import Path
 
@@ -25,6 +26,10 @@ SCAN_BOUNDS = {"cvt2": 0.62, "cvt3": 0.45}
 DELAUNAY_BOUND = 0.6
 # At equal numbers of boundary triangles, of the better of cvt2+fit and cvt4, and of cvt4 itself; Dmean and Drmse alike.
 EQUAL_TRIANGLES_BOUNDS = {"mc": (0.45, 0.60), "delaunay": (0.55, 0.75)}
+# Volumes of shapes that have a formula; cvt4's error is smaller than cvt3's by this factor.
+EXACT_VOLUMES = {"shape:torus": 2 * math.pi**2 * 0.4**2, "shape:ellipsoid": 4 / 3 * math.pi * 0.35,
+                 "shape:sphere": 4 / 3 * math.pi}
+VOLUME_GAIN = 10
 # On scans cvt4 relative to cvt3.
 SCAN_FIT_BOUND = 0.85
 # Mean and largest regularity of the kitten's cells from random sites after ten iterations, and what the fit changes.
@@ -137,7 +142,7 @@ def resolution_for(report: Report, program: Program, name: object, sites: int) -
     return best
 
 
-def check_fit(report: Report, comparison: dict, scan: bool) -> None:
+def check_fit(report: Report, comparison: dict, name: object, scan: bool) -> None:
     """Fitted caps against unfitted ones, and at equal numbers of boundary triangles."""
     methods = comparison["methods"]
     fitted, plain = methods["cvt4"], methods["cvt3"]
@@ -148,6 +153,11 @@ def check_fit(report: Report, comparison: dict, scan: bool) -> None:
         report.at_most("cvt4 Dmean / cvt3", ratio, SCAN_FIT_BOUND)
         report.at_most("cvt4 Dmax / cvt3", fitted["accuracy"]["dmax"] / plain["accuracy"]["dmax"], 1.0)
         return
+    if name in EXACT_VOLUMES:
+        exact = EXACT_VOLUMES[name]
+        errors = [abs(method["validity"]["volume"] - exact) for method in (plain, fitted)]
+        report.check("volume error of cvt3 / cvt4", errors[0] / errors[1], f">= {VOLUME_GAIN}",
+                     errors[0] >= VOLUME_GAIN * errors[1])
     report.at_most("cvt4 Nmean / cvt3", fitted["accuracy"]["nmean"] / plain["accuracy"]["nmean"], 1.0)
     for baseline, (best_bound, own_bound) in EQUAL_TRIANGLES_BOUNDS.items():
         for criterion in ("dmean", "drmse"):
@@ -182,7 +192,7 @@ def check_at_sites(report: Report, program: Program, name: object, bounds: dict[
                                f"{comparison['methods'][method]['relative_to']['mc']['dmean']:.4f}")
         return
     check_ratios(report, comparison, bounds)
-    check_fit(report, comparison, scan)
+    check_fit(report, comparison, name, scan)
 
 
 def check_inputs(report: Report, program: Program, data: Path) -> None:

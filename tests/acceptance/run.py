@@ -1,6 +1,6 @@
 """Runs the proofs and prints each figure with its bound; exits with 1 if one misses it.
 
-run.py --build FOLDER [POINT...]    points: demo scans accuracy regularity comparison speed same_bits bad_input sanitizers
+run.py --build FOLDER [POINT...]    points: demo scans accuracy regularity regular_cvts comparison speed same_bits bad_input sanitizers
 """
 
 from __future__ import annotations
@@ -11,7 +11,8 @@ from pathlib import Path
 
 from report import Program, Report, main_report
 
-POINTS = ("demo", "scans", "accuracy", "regularity", "comparison", "speed", "same_bits", "bad_input", "sanitizers")
+POINTS = ("demo", "scans", "accuracy", "regularity", "regular_cvts", "comparison", "speed", "same_bits", "bad_input",
+          "sanitizers")
 
 
 def main() -> None:
