@@ -119,6 +119,8 @@ TEST(ThinParts, SheetIsKeptUpToItsRim) {
     if (std::abs(side - 1) < 1e-9) ++atRim;
   }
   EXPECT_GE(atRim, 4 * (kSide - 2));
+  EXPECT_EQ(flat.clipped.summary.tonguePoints, static_cast<Index>(flat.clipped.chordPointFacets.size()));
+  EXPECT_EQ(flat.clipped.summary.tips, 0) << "flat caps search none";
   for (const CapKind cap : kCaps) {
     const auto result = testing::tessellateSites(sites, *form, {.cap = cap});
     const mesh::Certificate certificate = mesh::validate(result.complex, {}, {});
@@ -157,6 +159,7 @@ TEST(ThinParts, CapsReachTheTipOfACone) {
       double nearest = 1;
       for (const Vec3& vertex : result.complex.vertices) nearest = std::min(nearest, (vertex - tip).norm());
       EXPECT_LT(nearest, 0.03) << "seed " << seed;
+      EXPECT_GE(result.clipped.summary.tips, 1) << "seed " << seed;
     }
   }
 }

@@ -22,9 +22,6 @@ constexpr std::size_t kGrain = 64;
 constexpr double kReach = 2;
 // First step of the search for S, in units of the loop's radius.
 constexpr double kFirstStep = 0.1;
-// Cap points keep this share of the way to the cell's border clear, so that they stay inside the cell: a fan over a
-// loop on the border of a convex cell about a point inside it cannot cross itself.
-constexpr double kBorderShare = 1e-3;
 // A cap over a loop in a facet's plane encloses a volume if its point is at least this high, in units of the radius.
 constexpr double kPlanarHeight = 1e-6;
 // Where S is higher than kTall over a loop, or not met, the cell may hold the end of a thin part. Its tip is searched;
@@ -210,10 +207,14 @@ class CellCapper {
 
   Vec3 projected(const LoopFrame& frame) {
     const std::optional<double> height = projection(frame);
-    if (!height || *height > kTall * frame.width) {
+    // A loop without area has no normal to search about.
+    if (frame.width > 0 && (!height || *height > kTall * frame.width)) {
       const TipSearch search{frame.centroid, frame.normal, frame.width, kLong * frame.width,
                              [&](const Vec3& direction) { return reachInCell(frame.centroid, direction); }};
-      if (const auto tip = findTip(search, f_, options_, chunk_.summary.evaluations)) return *tip;
+      if (const auto tip = findTip(search, f_, options_, chunk_.summary.evaluations)) {
+        ++chunk_.summary.tips;
+        return *tip;
+      }
     }
     if (!height) ++chunk_.summary.unprojectedPoints;
     return frame.centroid + height.value_or(0.0) * frame.normal;
@@ -357,6 +358,7 @@ Caps buildCaps(const Diagram& diagram, ClippedDiagram& clipped, const implicit::
     caps.patches.insert(caps.patches.end(), chunk.patches.begin(), chunk.patches.end());
     caps.triangleOffsets.insert(caps.triangleOffsets.end(), chunk.counts.begin(), chunk.counts.end());
     clipped.summary.capPoints += chunk.summary.capPoints;
+    clipped.summary.tips += chunk.summary.tips;
     clipped.summary.unprojectedPoints += chunk.summary.unprojectedPoints;
     clipped.summary.fallbackCaps += chunk.summary.fallbackCaps;
     clipped.summary.crossingCells += chunk.summary.crossingCells;

@@ -24,8 +24,6 @@ constexpr double kReach = 2;
 // what is farther than kLong is one. In units of the chord's length.
 constexpr double kTall = 0.25;
 constexpr double kLong = 0.75;
-// Points keep this share of the way to the facet's border clear, so that they stay inside the facet.
-constexpr double kBorderShare = 1e-3;
 
 // The chords of one facet and the points found for them.
 class FacetChords {
@@ -37,9 +35,10 @@ class FacetChords {
       corners_.push_back(frame_(diagram.vertices[static_cast<std::size_t>(v)]));
   }
 
-  // Where S meets the facet's plane, along the chord's perpendicular through its middle.
+  // Where S meets the facet's plane, along the chord's perpendicular through its middle; or a thin part's tip, which
+  // adds to `tips`.
   std::optional<Vec3> find(const Chord& chord, const implicit::ImplicitFunction& f, const ClipOptions& options,
-                           std::int64_t& evaluations) const {
+                           Index& tips, std::int64_t& evaluations) const {
     const Vec3& leave = clipped_.position(diagram_, chord.leave);
     const Vec3& enter = clipped_.position(diagram_, chord.enter);
     const Vec3 middle = 0.5 * (leave + enter);
@@ -57,7 +56,10 @@ class FacetChords {
     const std::optional<double> distance =
         projectOnSurface(f, ray, kFirstStep * length, options.rootTolerance * length, options.rootFinder, evaluations);
     if (!distance || *distance > kTall * length) {
-      if (const auto tip = findTip(chord, middle, length, f, options, evaluations)) return tip;
+      if (const auto tip = findTip(chord, middle, length, f, options, evaluations)) {
+        ++tips;
+        return tip;
+      }
     }
     if (!distance) return std::nullopt;
     return middle + *distance * ray.direction;
@@ -145,6 +147,7 @@ void walkPolygon(const ClippedDiagram& clipped, const FacetRange& range, std::si
 struct Counts {
   Index tried = 0;
   Index failed = 0;
+  Index tips = 0;
   std::int64_t evaluations = 0;
 };
 
@@ -155,13 +158,14 @@ void bendFacet(const Diagram& diagram, const ClippedDiagram& clipped, const Face
   const FacetChords facet(diagram, clipped, clipped.chords[range.chordBegin].facet);
   std::vector<std::vector<Eigen::Vector2d>> rings;
   Index points = 0;
+  Index tips = 0;
   for (std::size_t p = range.polygonBegin; p < range.polygonEnd; ++p) {
     auto& ring = rings.emplace_back();
     walkPolygon(
         clipped, range, p, [&](Index point) { ring.push_back(facet.inPlane(clipped.position(diagram, point))); },
         [&](std::size_t c) {
           ++counts.tried;
-          found[c] = facet.find(clipped.chords[c], f, options, counts.evaluations);
+          found[c] = facet.find(clipped.chords[c], f, options, tips, counts.evaluations);
           if (found[c]) {
             ring.push_back(facet.inPlane(*found[c]));
             ++points;
@@ -170,7 +174,10 @@ void bendFacet(const Diagram& diagram, const ClippedDiagram& clipped, const Face
           }
         });
   }
-  if (points == 0 || simpleAndApart(rings)) return;
+  if (points == 0 || simpleAndApart(rings)) {
+    counts.tips += tips;
+    return;
+  }
   for (std::size_t c = range.chordBegin; c < range.chordEnd; ++c) found[c].reset();
   counts.failed += points;
 }
@@ -188,9 +195,10 @@ void addChordPoints(const Diagram& diagram, const implicit::ImplicitFunction& f,
         return count;
       },
       [](const Counts& a, const Counts& b) {
-        return Counts{a.tried + b.tried, a.failed + b.failed, a.evaluations + b.evaluations};
+        return Counts{a.tried + b.tried, a.failed + b.failed, a.tips + b.tips, a.evaluations + b.evaluations};
       });
   clipped.summary.chordPoints = counts.tried;
+  clipped.summary.tips += counts.tips;
   clipped.summary.unprojectedPoints += counts.failed;
   clipped.summary.evaluations += counts.evaluations;
 

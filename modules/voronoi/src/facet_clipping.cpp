@@ -212,6 +212,7 @@ void clipFacets(const Diagram& diagram, const EdgeRoots& roots, const implicit::
     clipped.points.insert(clipped.points.end(), chunk.tonguePoints.begin(), chunk.tonguePoints.end());
     clipped.chordPointFacets.insert(clipped.chordPointFacets.end(), chunk.tongueFacets.begin(),
                                     chunk.tongueFacets.end());
+    clipped.summary.tonguePoints += static_cast<Index>(chunk.tonguePoints.size());
     clipped.summary.evaluations += chunk.evaluations;
     clipped.polygonFacets.insert(clipped.polygonFacets.end(), chunk.facets.begin(), chunk.facets.end());
     clipped.polygonOffsets.insert(clipped.polygonOffsets.end(), chunk.sizes.begin(), chunk.sizes.end());

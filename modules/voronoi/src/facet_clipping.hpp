@@ -6,8 +6,8 @@
 
 namespace voroform::voronoi {
 
-// Fills facetStates, the polygons and the chords (without their points) of `clipped`, whose inside, points and
-// rootSites are set.
+// Fills facetStates, the polygons and the chords (without their points) of `clipped`, whose points (the roots),
+// rootCount and rootSites are set. Appends tongue points to points, and their facets to chordPointFacets.
 void clipFacets(const Diagram& diagram, const EdgeRoots& roots, const implicit::ImplicitFunction& f,
                 const ClipOptions& options, ClippedDiagram& clipped, const RunContext& context);
 

@@ -16,6 +16,10 @@ struct FacetFrame {
 };
 FacetFrame facetFrame(const Diagram& diagram, Index facet);
 
+// Points put inside a facet or a cell keep this share of the way to its border clear. A fan over a loop on the border
+// of a convex cell, about a point strictly inside it, cannot cross itself.
+inline constexpr double kBorderShare = 1e-3;
+
 // How far a ray from p in direction d stays within the convex facet, given by its corners counter-clockwise.
 double reachInFacet(const std::vector<Eigen::Vector2d>& facet, const Eigen::Vector2d& p, const Eigen::Vector2d& d);
 

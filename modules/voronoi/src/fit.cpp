@@ -16,8 +16,6 @@ constexpr std::size_t kGrain = 256;
 constexpr double kMostShift = 0.25;
 // Roots keep this share of the way to their neighbors on the edge clear.
 constexpr double kRootShare = 0.05;
-// Chord points and apexes keep this share of the way to the facet's and the cell's border clear.
-constexpr double kBorderShare = 1e-3;
 
 // The movable points: the clipped diagram's own, then the caps'. Numbered without the diagram's vertices.
 class CapFit {

@@ -1,8 +1,10 @@
 // Clipped planar cells: their borders, moments and loops.
 #include <algorithm>
 #include <numeric>
+#include <string>
 #include <utility>
 
+#include "voroform/core/error.hpp"
 #include "voroform/core/parallel.hpp"
 #include "voroform/voronoi/planar.hpp"
 
@@ -56,9 +58,9 @@ class BorderMoments {
 // Loops of one cell, each by its walls' numbers in order.
 class LoopTracer {
  public:
-  // Calls beginLoop() and visit(wall) for each of the loop's walls in order.
+  // Calls beginLoop() and visit(wall) for each of the loop's walls in order. Throws MethodError if a loop stays open.
   template <class Begin, class Visit>
-  void trace(std::span<const CellWall> walls, const Begin& beginLoop, const Visit& visit) {
+  void trace(Index site, std::span<const CellWall> walls, const Begin& beginLoop, const Visit& visit) {
     byStart_.resize(walls.size());
     std::iota(byStart_.begin(), byStart_.end(), std::size_t{0});
     std::sort(byStart_.begin(), byStart_.end(),
@@ -67,12 +69,18 @@ class LoopTracer {
     for (std::size_t first = 0; first < walls.size(); ++first) {
       if (visited_[first]) continue;
       beginLoop();
-      for (std::size_t w = first; !visited_[w];) {
+      std::size_t w = first;
+      do {
         visited_[w] = true;
         visit(walls[w]);
-        w = *std::lower_bound(byStart_.begin(), byStart_.end(), walls[w].to,
-                              [&](std::size_t a, Index point) { return walls[a].from < point; });
-      }
+        const Index to = walls[w].to;
+        const auto next = std::lower_bound(byStart_.begin(), byStart_.end(), to,
+                                           [&](std::size_t a, Index point) { return walls[a].from < point; });
+        if (next == byStart_.end() || walls[*next].from != to || (visited_[*next] && *next != first)) {
+          throw MethodError("the walls of the cell of site " + std::to_string(site) + " do not close");
+        }
+        w = *next;
+      } while (w != first);
     }
   }
 
@@ -121,7 +129,7 @@ mesh::PlanarTessellation toTessellation(const PlanarDiagram& diagram, const Plan
       if (open) result.loopOffsets.push_back(static_cast<std::uint32_t>(result.loopVertices.size()));
     };
     tracer.trace(
-        walls,
+        site, walls,
         [&] {
           endLoop();
           open = true;

@@ -12,7 +12,7 @@ std::optional<double> projectOnSurface(const implicit::ImplicitFunction& f, cons
   const double reach = inside ? ray.outward : ray.inward;
   const Vec3 direction = inside ? ray.direction : Vec3(-ray.direction);
   double near = 0;
-  while (near < reach) {
+  while (near < reach && step > 0) {
     const double far = std::min(near + step, reach);
     const double farValue = f.value(ray.origin + far * direction);
     ++evaluations;

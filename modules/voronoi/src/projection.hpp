@@ -16,7 +16,8 @@ struct Ray {
 };
 
 // The distance along the ray's direction at which it meets S first, going outward if the origin is inside and inward
-// if it is outside; nothing if S is not met within reach. `step` is the first step to try; later ones double.
+// if it is outside; nothing if S is not met within reach. `step` is the first step to try; later ones double; one of 0
+// finds nothing.
 std::optional<double> projectOnSurface(const implicit::ImplicitFunction& f, const Ray& ray, double step,
                                        double tolerance, implicit::RootFinder finder, std::int64_t& evaluations);
 

@@ -11,8 +11,6 @@ namespace voroform::voronoi {
 
 namespace {
 
-using Vec2 = Eigen::Vector2d;
-
 // A tongue's rays begin this far off the edge, and it is at least so long, in units of the stretch.
 constexpr double kOffEdge = 0.05;
 constexpr double kLeastLength = 0.1;
@@ -20,8 +18,6 @@ constexpr double kLeastLength = 0.1;
 constexpr int kTongueRays = 7;
 // First step along a ray, in units of the stretch or the radius.
 constexpr double kFirstStep = 0.1;
-// Points keep this share of the way to the border clear, so that they stay inside facet and cell.
-constexpr double kBorderShare = 1e-3;
 // Width of a tongue in its narrowest direction, in units of the stretch: what is thinner cannot be told from a segment.
 constexpr double kLeastWidth = 1e-4;
 // A tip is searched by rounds of rays in cones about the longest ray so far, each a third as wide as the last.

@@ -44,7 +44,9 @@ struct ClipSummary {
   Index multiLoopCells = 0;      // cells with several loops
   Index capPoints = 0;           // extra points tried on caps (cvt2, cvt3)
   Index chordPoints = 0;         // extra points tried on chords (cvt3)
-  Index unprojectedPoints = 0;   // of both, those left where they were
+  Index tonguePoints = 0;        // points where parts thinner than a cell end within facets (any cap)
+  Index tips = 0;                // of the points on caps and chords, those at the tip of a thin part (cvt2, cvt3)
+  Index unprojectedPoints = 0;   // of points on caps and chords, those left where they were
   Index fallbackCaps = 0;        // caps made in another way than asked for
   Index crossingCells = 0;       // cells whose caps cross in spite of every fallback: the certificate will say so
   Index fittedPoints = 0;        // boundary vertices that the fit moved
@@ -64,7 +66,9 @@ struct Chord {
 };
 
 // A diagram clipped by f. Points carry one numbering: the diagram's vertices first, then `points` in their order
-// (roots, then chord points). Facets have two owners, so what is decided for a facet is the same for both cells.
+// (roots, then tongue points, then chord points). Tongue points stand where the solid, met by a single edge of a facet,
+// ends within the facet; every kind of cap has them, and they are ends of chords. Facets have two owners, so what is
+// decided for a facet is the same for both cells.
 struct ClippedDiagram {
   std::vector<std::uint8_t> inside;  // of each diagram vertex: 1 where f < 0
   std::vector<Vec3> points;
@@ -72,7 +76,7 @@ struct ClippedDiagram {
   std::vector<std::array<Index, 3>> rootSites;  // the three sites of each root's edge, ascending
   // The two diagram vertices of each root's edge; roots of one edge stand in a row, in their order from the first.
   std::vector<std::array<Index, 2>> rootEnds;
-  std::vector<Index> chordPointFacets;  // the facet of each chord point
+  std::vector<Index> chordPointFacets;  // of each point after the roots: the facet that it lies in
 
   // What the solid keeps of each facet.
   enum class FacetState : std::uint8_t { outside, whole, cut };
