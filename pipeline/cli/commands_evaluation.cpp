@@ -4,6 +4,7 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "summary.hpp"
+#include "validators.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/pipeline/rank.hpp"
 #include "voroform/pipeline/reproduce.hpp"

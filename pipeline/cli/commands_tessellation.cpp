@@ -3,6 +3,7 @@
 #include "commands.hpp"
 #include "exit_codes.hpp"
 #include "planar.hpp"
+#include "site_options.hpp"
 #include "summary.hpp"
 #include "voroform/core/error.hpp"
 
@@ -14,22 +15,36 @@ constexpr const char* kInvalid =
     "the tessellation fails its certificate of validity; its files are for examination only; another number of sites "
     "or --method cvt2 may help";
 
-// The sites of the file that --init names, in the form's coordinates.
-std::vector<Vec3> givenSites(const Settings& settings, const pipeline::Form& form, const RunContext& context) {
-  if (siteOptions(settings).initialization != cvt::Initialization::given) return {};
-  std::vector<Vec3> sites = pipeline::readSites(settings.initialization, context);
+// Checks the options before the input is read and its form is made, which may take long. The sites of the file that
+// --init names are read for the same reason; they are in the input's coordinates.
+pipeline::WriteOptions checkedOptions(const Settings& settings, const CLI::App& command, const RunContext& context) {
+  requireSiteOptions(settings, command);
+  pipeline::checkOutputFolder(settings.output);
+  pipeline::WriteOptions options = writeOptions(settings);
+  cvt::TessellateOptions& tessellate = options.tessellate;
+  if (tessellate.initialization == cvt::Initialization::given) {
+    tessellate.given = pipeline::readSites(settings.initialization, context);
+    tessellate.sites = static_cast<Index>(tessellate.given.size());
+  }
+  cvt::requireMemory(tessellate);
+  return options;
+}
+
+// Takes the sites to the form's coordinates.
+void placeSites(std::vector<Vec3>& sites, const pipeline::Form& form, const std::string& file) {
   for (std::size_t i = 0; i < sites.size(); ++i) {
     sites[i] -= form.record.frame.origin;
     if (!(form.function->value(sites[i]) < 0)) {
-      throw InputError(settings.initialization + ": site " + std::to_string(i + 1) + " lies outside the solid");
+      throw InputError(file + ": site " + std::to_string(i + 1) + " lies outside the solid");
     }
   }
-  return sites;
 }
 
-int makeResults(const pipeline::Form& form, const Settings& settings, const RunContext& context) {
-  pipeline::WriteOptions options = writeOptions(settings);
-  options.tessellate.given = givenSites(settings, form, context);
+int makeResults(const Settings& settings, const CLI::App& command, const RunContext& context) {
+  pipeline::WriteOptions options = checkedOptions(settings, command, context);
+  const pipeline::Form form = pipeline::formFromInput(settings.input, formOptions(settings), context);
+  requireMeaning(form, command);
+  placeSites(options.tessellate.given, form, settings.initialization);
   const pipeline::Tessellation tessellation =
       pipeline::tessellate(form, options.tessellate, context, !settings.noAccuracy);
   const std::vector<std::string> names = pipeline::writeResults(form, tessellation, options, settings.output, context);
@@ -50,21 +65,13 @@ int runReconstruct(const Settings& settings, const CLI::App& command, const RunC
   if (isForm(settings.input)) {
     throw UsageError(settings.input + ": reconstruct starts from points or a mesh; use tessellate for a form");
   }
-  pipeline::checkOutputFolder(settings.output);
-  cvt::requireMemory(writeOptions(settings).tessellate);
-  const pipeline::Form form = pipeline::formFromInput(settings.input, formOptions(settings), context);
-  requireMeaning(form, command);
-  return makeResults(form, settings, context);
+  return makeResults(settings, command, context);
 }
 
 int runTessellate(const Settings& settings, const CLI::App& command, const RunContext& context) {
   if (pipeline::isPlanarInput(settings.input)) return tessellatePlanar(settings, command, context);
   requireFormOptions(settings, command);
-  pipeline::checkOutputFolder(settings.output);
-  cvt::requireMemory(writeOptions(settings).tessellate);
-  const pipeline::Form form = pipeline::formFromInput(settings.input, formOptions(settings), context);
-  requireMeaning(form, command);
-  return makeResults(form, settings, context);
+  return makeResults(settings, command, context);
 }
 
 int runEvaluate(const Settings& settings, const CLI::App&, const RunContext& context) {

@@ -1,93 +1,20 @@
 #include "options.hpp"
 
 #include <algorithm>
-#include <charconv>
 #include <limits>
-#include <set>
-#include <sstream>
 #include <thread>
 #include <vector>
 
+#include "site_options.hpp"
+#include "validators.hpp"
 #include "voroform/core/error.hpp"
 
 namespace voroform::cli {
 
 namespace {
 
-// The number that the text is, as a whole; CLI11 alone would take -1 for the largest unsigned number.
-template <class T>
-bool parse(const std::string& text, T& value) {
-  const char* const end = text.data() + text.size();
-  const auto parsed = std::from_chars(text.data(), end, value);
-  return parsed.ec == std::errc() && parsed.ptr == end;
-}
-
-// Accepts numbers in [low, high]; the message names the value and the range.
-template <class T>
-CLI::Validator inRange(T low, T high) {
-  std::ostringstream range;
-  range << '[' << low << ", " << high << ']';
-  CLI::Validator validator;
-  validator.name("range")
-      .description("in " + range.str())
-      .operation([low, high, text = range.str()](std::string& input) {
-        T value{};
-        if (parse(input, value) && value >= low && value <= high) return std::string();
-        return input + " is not in " + text;
-      });
-  return validator;
-}
-
-// To stand before CLI::AsSizeValue.
-CLI::Validator notNegative() {
-  CLI::Validator validator;
-  validator.name("not negative").operation([](std::string& input) {
-    return input.find('-') == std::string::npos ? std::string() : input + " is not a size";
-  });
-  return validator;
-}
-
-CLI::Validator oneOf(const std::vector<std::string>& names) {
-  std::string list;
-  for (const std::string& name : names) list += (list.empty() ? "" : ", ") + name;
-  CLI::Validator validator;
-  validator.name("choice").description("one of " + list).operation([names, list](std::string& input) {
-    for (const std::string& name : names) {
-      if (input == name) return std::string();
-    }
-    return "unknown value " + input + "; expected one of " + list;
-  });
-  return validator;
-}
-
 constexpr pipeline::ExtraFormat kFormats[] = {pipeline::ExtraFormat::obj, pipeline::ExtraFormat::off,
                                               pipeline::ExtraFormat::stl, pipeline::ExtraFormat::adjacency};
-
-// A list of these names, separated by commas; `thing` is what one of them is.
-CLI::Validator someOf(const std::string& thing, const std::vector<std::string>& names, bool orNone = false) {
-  std::string all;
-  for (const std::string& name : names) all += (all.empty() ? "" : ",") + name;
-  CLI::Validator validator;
-  validator.name(thing + "s").description("of " + all).operation([thing, names, all, orNone](std::string& input) {
-    if (!orNone && split(input).empty()) return "no " + thing + "; expected some of " + all;
-    for (const std::string& part : split(input)) {
-      if (std::find(names.begin(), names.end(), part) == names.end()) {
-        return "unknown " + thing + " " + part + "; expected some of " + all;
-      }
-    }
-    return std::string();
-  });
-  return validator;
-}
-
-constexpr cvt::DensityKind kDensities[] = {cvt::DensityKind::constant, cvt::DensityKind::boundary,
-                                           cvt::DensityKind::curvature};
-
-std::vector<std::string> densityNames() {
-  std::vector<std::string> names;
-  for (const auto kind : kDensities) names.emplace_back(cvt::toString(kind));
-  return names;
-}
 
 std::vector<std::string> formatNames() {
   std::vector<std::string> names;
@@ -96,13 +23,6 @@ std::vector<std::string> formatNames() {
 }
 
 }  // namespace
-
-std::vector<std::string> split(const std::string& list) {
-  std::vector<std::string> parts;
-  std::stringstream stream(list);
-  for (std::string part; std::getline(stream, part, ',');) parts.push_back(CLI::detail::trim_copy(part));
-  return parts;
-}
 
 void addCommonOptions(CLI::App& command, Settings& settings) {
   command.add_option("--threads", settings.threads, "Most threads to use; 0: as many as the machine has")
@@ -168,74 +88,6 @@ void addFormOptions(CLI::App& command, Settings& settings) {
                   "turned")
       ->check(inRange(std::uint64_t{0}, std::numeric_limits<std::uint64_t>::max()));
 }
-
-namespace {
-
-void addSiteOptions(CLI::App& command, Settings& settings) {
-  command.add_option("--sites", settings.sites, "Number of sites, and so of cells")
-      ->check(inRange(Index{1}, std::numeric_limits<Index>::max()))
-      ->capture_default_str();
-  std::string kinds;
-  for (const std::string& name : pipeline::initializationNames()) kinds += name + ", ";
-  command
-      .add_option("--init", settings.initialization,
-                  "Initial sites: " + kinds + "or a file of sites in any format of clouds")
-      ->type_name("KIND|FILE")
-      ->capture_default_str();
-  command
-      .add_option("--subdivisions", settings.subdivisions,
-                  "Of hierarchical sites; as many as their number and the rule make sense of if not given")
-      ->check(inRange(0, 20));
-  command
-      .add_option(
-          "--subdivision-rule", settings.subdivisionRule,
-          "Whether coarser levels are made so that the finer lattice fits the boundary (matched), or sites that "
-          "subdivision leaves missing are inserted there (insertion, the thesis's)")
-      ->check(oneOf({toString(cvt::SubdivisionRule::matched), toString(cvt::SubdivisionRule::insertion)}))
-      ->capture_default_str();
-  command.add_option("--iterations", settings.iterations, "Iterations of the optimizer; 0 clips the initial sites")
-      ->check(inRange(0, 1'000'000))
-      ->capture_default_str();
-  command.add_option("--optimizer", settings.optimizer, "How the sites are moved")
-      ->check(oneOf(pipeline::optimizerNames()))
-      ->capture_default_str();
-  command
-      .add_option("--perturbations", settings.perturbations, "Tries of the Monte-Carlo optimizer to leave a minimum")
-      ->check(inRange(0, 1'000'000))
-      ->capture_default_str();
-  command
-      .add_option("--convergence", settings.convergence,
-                  "Stop when the sites' distances to their centroids, in cell sizes, have this root mean square; 0: "
-                  "never")
-      ->check(inRange(0.0, 1e9))
-      ->capture_default_str();
-  command
-      .add_option("--gradient-tolerance", settings.gradientTolerance,
-                  "Stop when the gradient's norm is this share of the coordinates' norm (the thesis's rule); 0: never")
-      ->check(inRange(0.0, 1e9))
-      ->capture_default_str();
-  command
-      .add_option("--relative-error", settings.relativeError,
-                  "Stop when the energy is within this share of its optimum; 0: never")
-      ->check(inRange(0.0, 1e9))
-      ->capture_default_str();
-  command
-      .add_option("--density", settings.density,
-                  "Where cells are to be small: nowhere, at the boundary, or where the surface is curved most")
-      ->check(oneOf(densityNames()))
-      ->capture_default_str();
-  command.add_option("--density-ratio", settings.densityRatio, "Size of the largest cells relative to the smallest")
-      ->check(inRange(1.0, cvt::Density<3>::kMostRatio))
-      ->capture_default_str();
-  command
-      .add_option("--density-width", settings.densityWidth,
-                  "Of the boundary density: depth at which cells reach their full size, in the input's units; 0: 4 "
-                  "mean cell sizes")
-      ->check(inRange(0.0, 1e300))
-      ->capture_default_str();
-}
-
-}  // namespace
 
 void addTessellationOptions(CLI::App& command, Settings& settings) {
   command
@@ -407,34 +259,6 @@ void requireMeaning(const pipeline::Form& form, const CLI::App& command) {
   if (!form.record.mesh || form.record.mesh->kind != pipeline::ImplicitKind::poisson) {
     refuse("--samples", "which is not sampled; it belongs to a mesh with --implicit poisson");
   }
-}
-
-cvt::SiteOptions siteOptions(const Settings& settings) {
-  cvt::SiteOptions options;
-  options.sites = settings.sites;
-  options.initialization = pipeline::initializationNamed(settings.initialization).value_or(cvt::Initialization::given);
-  options.subdivisions = settings.subdivisions.value_or(-1);
-  options.subdivisionRule = settings.subdivisionRule == toString(cvt::SubdivisionRule::insertion)
-                                ? cvt::SubdivisionRule::insertion
-                                : cvt::SubdivisionRule::matched;
-  options.iterations = settings.iterations;
-  options.optimizer = pipeline::optimizerNamed(settings.optimizer);
-  options.perturbations = settings.perturbations;
-  options.convergence = settings.convergence;
-  options.gradientTolerance = settings.gradientTolerance;
-  options.relativeError = settings.relativeError;
-  options.seed = settings.seed;
-  return options;
-}
-
-cvt::DensityOptions densityOptions(const Settings& settings) {
-  cvt::DensityOptions options;
-  for (const auto kind : kDensities) {
-    if (settings.density == cvt::toString(kind)) options.kind = kind;
-  }
-  options.ratio = settings.densityRatio;
-  options.width = settings.densityWidth;
-  return options;
 }
 
 pipeline::WriteOptions writeOptions(const Settings& settings) {

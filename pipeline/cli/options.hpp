@@ -103,11 +103,7 @@ void requireFormOptions(const Settings& settings, const CLI::App& command);
 // Throws UsageError if an option was given that has no meaning for the form that was made: an envelope for the signed
 // distance to a mesh, which is closed; a number of samples for anything but a mesh's Poisson form.
 void requireMeaning(const pipeline::Form& form, const CLI::App& command);
-cvt::SiteOptions siteOptions(const Settings& settings);
-cvt::DensityOptions densityOptions(const Settings& settings);
 pipeline::WriteOptions writeOptions(const Settings& settings);
 pipeline::CompareOptions compareOptions(const Settings& settings);
-// The parts of a list separated by commas, without spaces around them.
-std::vector<std::string> split(const std::string& list);
 
 }  // namespace voroform::cli

@@ -3,6 +3,7 @@
 #include <iostream>
 
 #include "exit_codes.hpp"
+#include "site_options.hpp"
 #include "summary.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/pipeline/planar.hpp"
@@ -36,6 +37,7 @@ int tessellatePlanar(const Settings& settings, const CLI::App& command, const Ru
       throw UsageError(std::string(name) + ": has no meaning for " + settings.input + ", a region of the plane");
     }
   }
+  requireSiteOptions(settings, command);
   pipeline::checkOutputFolder(settings.output);
   const pipeline::PlanarInput input = pipeline::planarFromInput(settings.input, context);
   pipeline::PlanarWriteOptions options;

@@ -98,6 +98,8 @@ Json clippingJson(const cvt::TessellateSummary& summary) {
           {"fitted_points", clip.fittedPoints},
           {"unfitted_points", clip.unfittedPoints},
           {"chord_points", clip.chordPoints},
+          {"tongue_points", clip.tonguePoints},
+          {"tips", clip.tips},
           {"function_evaluations", clip.evaluations},
           {"oracle_share", clip.oracleShare},
           {"reseeded_sites", summary.reseededSites},
@@ -195,7 +197,7 @@ Json metricsJson(const Form& form, const Tessellation& tessellation, const Write
   for (const char* key : {"mesh", "points", "implicit"}) {
     if (formRecordJson.contains(key)) json[key] = formRecordJson[key];
   }
-  json["counts"] = countsJson(tessellation.complex, measurement, options.tessellate.sites);
+  json["counts"] = countsJson(tessellation.complex, measurement, summary.sites);
   json["validity"] = validityJson(measurement.certificate);
   Json fidelity = Json::object();
   setMeasuredFidelity(fidelity, measurement.fidelity, form.record.points.has_value());

@@ -8,8 +8,8 @@
 #include "form_parts.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/core/input_file.hpp"
-#include "voroform/core/memory.hpp"
 #include "voroform/cvt/planar_domain.hpp"
+#include "voroform/cvt/tessellate.hpp"
 #include "voroform/pipeline/site_options.hpp"
 #include "voroform/voronoi/planar.hpp"
 #include "warnings.hpp"
@@ -22,15 +22,11 @@ constexpr std::string_view kShapePrefix = "shape2d:";
 constexpr const char* kKind = "region";
 
 // Measured peaks of whole runs, certificate and writers included, at a million sites of the square and the star: 0.72
-// and 0.83 kB a site.
-constexpr std::uint64_t kBytesPerSite = 1200;
+// and 0.83 kB a site. A density takes no grid here.
+constexpr cvt::MemoryCost kCost = {1200, 0};
 
-void requireMemory(const PlanarOptions& options) {
-  const std::uint64_t limit = options.memoryLimit != 0 ? options.memoryLimit : usableMemory();
-  const std::uint64_t needed = estimatedPlanarMemory(options.sites);
-  if (needed <= limit) return;
-  throw EnvironmentError(std::to_string(options.sites) + " sites need about " + std::to_string(needed >> 20U) +
-                         " MiB of memory, " + std::to_string(limit >> 20U) + " MiB are there: use fewer sites");
+void throwIfInvalid(const PlanarOptions& options) {
+  if (const auto violations = validate(options); !violations.empty()) throw UsageError(violations.front());
 }
 
 // Takes out the cells without loops, which have no neighbors; gives their number.
@@ -109,8 +105,14 @@ std::vector<Vec2> readPlanarSites(const std::filesystem::path& path, const mesh:
   return sites;
 }
 
-std::uint64_t estimatedPlanarMemory(Index sites) {
-  return kBytesPerSite * static_cast<std::uint64_t>(std::max(sites, Index{0}));
+std::vector<std::string> validate(const PlanarOptions& options) {
+  std::vector<std::string> violations = validate(static_cast<const cvt::SiteOptions&>(options));
+  const std::vector<std::string> others = validate(options.density);
+  violations.insert(violations.end(), others.begin(), others.end());
+  if (options.density.kind == cvt::DensityKind::curvature) {
+    violations.emplace_back("density is curvature, but a polygon's edges are straight: use boundary or constant");
+  }
+  return violations;
 }
 
 PlanarMeasurement measure(const mesh::PlanarTessellation& tessellation, const mesh::PlanarRegion& region,
@@ -130,12 +132,14 @@ PlanarMeasurement measure(const mesh::PlanarTessellation& tessellation, const me
 }
 
 PlanarResult tessellatePlanar(const PlanarInput& input, const PlanarOptions& options, const RunContext& context) {
-  requireMemory(options);
+  throwIfInvalid(options);
+  const Index sites = cvt::siteCount(options, options.given.size());
+  cvt::requireMemory(options, sites, kCost, options.memoryLimit);
   PlanarResult result;
   const RunContext recording = recordWarnings(context, result.warnings);
   Stopwatch watch;
   cvt::PlanarDomain domain(input.region);
-  const double cellSize = std::sqrt(input.region.area() / options.sites);
+  const double cellSize = std::sqrt(input.region.area() / std::max(sites, 1));
   domain.setDensity(cvt::makeDensity(input.region, options.density, cellSize));
   cvt::OptimizedSites<2> optimized = cvt::optimizeSites<2>(domain, options.given, options, recording);
   result.summary = std::move(optimized.summary);

@@ -19,7 +19,7 @@ class BadInput : public testing::Test {
  protected:
   // Runs reconstruct on the file and expects exit 3 without an output folder; gives what was printed on stderr.
   std::string refused(const std::string& input, const std::vector<std::string>& more = {}) {
-    std::vector<std::string> arguments = {"reconstruct", input, "-o", folder_ / "out", "--sites", "100"};
+    std::vector<std::string> arguments = {"reconstruct", input, "-o", folder_ / "out"};
     arguments.insert(arguments.end(), more.begin(), more.end());
     const Outcome outcome = run(arguments);
     EXPECT_EQ(outcome.exitCode, 3) << outcome.err;
@@ -125,6 +125,27 @@ TEST_F(BadInput, InputsTakenForWhatTheyAreNot) {
       folder_.write("tetra.off", "OFF\n4 4 0\n0 0 0\n1 0 0\n0 1 0\n0 0 1\n3 0 2 1\n3 0 1 3\n3 0 3 2\n3 1 2 3\n");
   EXPECT_THAT(refused(off, {"--as", "points"}), HasSubstr("4"));
   EXPECT_THAT(refused(folder_.write("cloud.xyz", xyzText(torusPoints(100))), {"--as", "mesh"}), HasSubstr("mesh"));
+}
+
+// Before the input is: it takes long to make a form of it.
+TEST_F(BadInput, FilesOfSitesAreReadFirst) {
+  const std::string none = folder_ / "none.xyz";
+  const auto refusedSites = [&](const std::string& name, const std::string& content) {
+    return refused(none, {"--init", folder_.write(name, content)});
+  };
+  EXPECT_THAT(refusedSites("text.xyz", "0 0 0\n0 left 0\n"), AllOf(HasSubstr("text.xyz:2"), HasSubstr("left")));
+  EXPECT_THAT(refusedSites("twice.xyz", "0 0 0\n1 0 0\n0 0 0\n"), HasSubstr("twice.xyz: sites 1 and 3 coincide"));
+  EXPECT_THAT(refusedSites("infinite.xyz", "0 0 0\n1 0 inf\n"), HasSubstr("infinite.xyz: site 2 is not finite"));
+  EXPECT_THAT(refused(none, {"--init", "no-such-kind"}), HasSubstr("no-such-kind"));
+  // The negative control: the input is read next.
+  EXPECT_THAT(refusedSites("good.xyz", "0 0 0\n1 0 0\n"), HasSubstr("none.xyz: no such file"));
+}
+
+TEST_F(BadInput, SitesOutsideTheSolid) {
+  const Outcome outcome =
+      run({"tessellate", "shape:torus", "-o", folder_ / "out", "--init", folder_.write("sites.xyz", "1 0 0\n0 0 0\n")});
+  EXPECT_EQ(outcome.exitCode, 3);
+  EXPECT_THAT(outcome.err, HasSubstr("sites.xyz: site 2 lies outside the solid"));
 }
 
 TEST_F(BadInput, FormWithoutItsCompanions) {

@@ -78,6 +78,92 @@ INSTANTIATE_TEST_SUITE_P(
                     Misuse{"EnvelopeOfAShape", {"--envelope", "box"}, {"--envelope", "shape:sphere"}}),
     [](const testing::TestParamInfo<Misuse>& tested) { return std::string(tested.param.name); });
 
+struct Meaningless {
+  const char* name;
+  std::vector<std::string> options;
+  std::vector<std::string> said;            // the option without meaning, and the one that it lacks
+  std::vector<std::string> withoutMistake;  // options that give it one
+};
+
+void PrintTo(const Meaningless& meaningless, std::ostream* out) { *out << meaningless.name; }
+
+class MeaninglessOptions : public testing::TestWithParam<Meaningless> {};
+
+TEST_P(MeaninglessOptions, AreRefusedInSpaceAndInThePlane) {
+  const TemporaryFolder folder;
+  const Meaningless& meaningless = GetParam();
+  for (const std::string input : {"shape:sphere", "shape2d:disc"}) {
+    const auto outcome = [&](const std::vector<std::string>& options) {
+      std::vector<std::string> arguments = {"tessellate", input, "-o", folder / "out", "--iterations", "0"};
+      arguments.insert(arguments.end(), meaningless.options.begin(), meaningless.options.end());
+      arguments.insert(arguments.end(), options.begin(), options.end());
+      return run(arguments);
+    };
+    const Outcome refused = outcome({});
+    EXPECT_EQ(refused.exitCode, 2) << input;
+    for (const std::string& text : meaningless.said) EXPECT_THAT(refused.err, HasSubstr(text)) << input;
+    EXPECT_FALSE(std::filesystem::exists(folder / "out"));
+    const Outcome control = outcome(meaningless.withoutMistake);
+    EXPECT_EQ(control.exitCode, 0) << input << control.err;
+    std::filesystem::remove_all(folder / "out");
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(
+    Options, MeaninglessOptions,
+    testing::Values(Meaningless{"SubdivisionsWithoutAHierarchy",
+                                {"--sites", "100", "--subdivisions", "1"},
+                                {"--subdivisions: has no meaning", "--init hierarchical-random"},
+                                {"--init", "hierarchical-random"}},
+                    Meaningless{"RuleWithoutAHierarchy",
+                                {"--sites", "100", "--subdivision-rule", "insertion"},
+                                {"--subdivision-rule: has no meaning", "--init hierarchical-random"},
+                                {"--init", "hierarchical-lattice"}},
+                    Meaningless{"PerturbationsWithoutMonteCarlo",
+                                {"--sites", "50", "--perturbations", "2"},
+                                {"--perturbations: has no meaning", "--optimizer monte-carlo"},
+                                {"--optimizer", "monte-carlo"}},
+                    Meaningless{"RatioWithoutADensity",
+                                {"--sites", "50", "--density-ratio", "2"},
+                                {"--density-ratio: has no meaning", "--density boundary"},
+                                {"--density", "boundary"}},
+                    Meaningless{"WidthWithoutADensity",
+                                {"--sites", "50", "--density-width", "0.5"},
+                                {"--density-width: has no meaning", "--density boundary"},
+                                {"--density", "boundary"}}),
+    [](const testing::TestParamInfo<Meaningless>& tested) { return std::string(tested.param.name); });
+
+TEST(Options, WidthHasNoMeaningForCurvature) {
+  const TemporaryFolder folder;
+  const Outcome outcome =
+      run({"tessellate", "shape:torus", "-o", folder / "out", "--density", "curvature", "--density-width", "0.5"});
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, AllOf(HasSubstr("--density-width: has no meaning"), HasSubstr("--density boundary")));
+}
+
+TEST(Options, AFileOfSitesSaysHowManyThereAre) {
+  const TemporaryFolder folder;
+  const std::string file = folder.write("sites.xyz", "0.1 0 0\n-0.1 0 0\n0 0.3 0\n");
+  const Outcome refused = run({"tessellate", "shape:sphere", "-o", folder / "out", "--init", file, "--sites", "7"});
+  EXPECT_EQ(refused.exitCode, 2);
+  EXPECT_THAT(refused.err, AllOf(HasSubstr("--sites: has no meaning"), HasSubstr("--init " + file)));
+  const Outcome outcome =
+      run({"tessellate", "shape:sphere", "-o", folder / "out", "--init", file, "--iterations", "0"});
+  ASSERT_EQ(outcome.exitCode, 0) << outcome.err;
+  const auto metrics = readJson(folder / "out/metrics.json");
+  EXPECT_EQ(metrics["options"]["sites"], 3);
+  EXPECT_EQ(metrics["counts"]["sites"], 3);
+}
+
+// As a key of a configuration file, too.
+TEST(Options, MeaninglessKeysAreRefused) {
+  const TemporaryFolder folder;
+  const std::string config = folder.write("run.toml", "subdivisions = 2\n");
+  const Outcome outcome = run({"tessellate", "shape:sphere", "-o", folder / "out", "--config", config});
+  EXPECT_EQ(outcome.exitCode, 2);
+  EXPECT_THAT(outcome.err, HasSubstr("--subdivisions: has no meaning"));
+}
+
 TEST(Options, TheLargestSeedIsOne) {
   const TemporaryFolder folder;
   const Outcome outcome = run({"tessellate", "shape:sphere", "-o", folder / "out", "--sites", "40", "--iterations", "0",

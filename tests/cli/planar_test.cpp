@@ -108,12 +108,47 @@ TEST_F(Planar, SitesWrittenCanBeGivenAgain) {
 
 TEST_F(Planar, EveryInitializationFillsTheRegion) {
   const std::string holes = folder_.write("holes.wkt", kHoles);
-  for (const std::string init : {"random", "hammersley", "farthest-point", "greedy-edge-collapse"}) {
+  // Of a lattice no placement may have just so many points inside.
+  const std::vector<std::string> exact = {
+      "random", "hammersley", "farthest-point", "greedy-edge-collapse", "hierarchical-random", "hierarchical-lattice"};
+  for (const std::string& init : exact) {
     const auto folder = made(init, holes, {"--sites", "100", "--init", init, "--iterations", "3"});
     const auto metrics = readJson(folder / "metrics.json");
     EXPECT_EQ(metrics["options"]["initialization"], init);
     EXPECT_EQ(metrics["counts"]["cells"], 100) << init;
+    EXPECT_EQ(metrics["validity"]["valid"], true) << init;
     EXPECT_NEAR(metrics["validity"]["area"].get<double>(), 63.5, 1e-10) << init;
+  }
+  const auto metrics =
+      readJson(made("lattice", holes, {"--sites", "100", "--init", "lattice", "--iterations", "3"}) / "metrics.json");
+  EXPECT_NEAR(metrics["counts"]["cells"].get<int>(), 100, 3);
+  EXPECT_NEAR(metrics["validity"]["area"].get<double>(), 63.5, 1e-10);
+}
+
+// In space, too.
+TEST_F(Planar, OnlyHierarchicalSitesHaveLevels) {
+  for (const std::string input : {"shape2d:star", "shape:torus"}) {
+    for (const std::string init : {"hierarchical-random", "hierarchical-lattice"}) {
+      const auto metrics = readJson(
+          made("levels", input, {"--sites", "700", "--init", init, "--subdivisions", "2", "--iterations", "3"}) /
+          "metrics.json");
+      ASSERT_TRUE(metrics.contains("hierarchy")) << input << init;
+      const auto& levels = metrics["hierarchy"];
+      ASSERT_EQ(levels.size(), 2U) << input << init;
+      EXPECT_GT(levels[0]["sites"].get<int>(), 0);
+      // The coarsest first; each level gives the sites of the next.
+      for (std::size_t level = 0; level < 2; ++level) {
+        const int next = level == 0 ? levels[1]["sites"].get<int>() : 700;
+        EXPECT_EQ(levels[level]["subdivided"].get<int>() + levels[level]["inserted"].get<int>(), next) << input << init;
+        EXPECT_GT(next, 2 * levels[level]["sites"].get<int>()) << input << init;
+        EXPECT_GT(levels[level]["iterations"].get<int>(), 0) << input << init;
+        EXPECT_GT(levels[level]["relative_error"].get<double>(), 0) << input << init;
+        EXPECT_TRUE(levels[level]["stop"].is_string()) << input << init;
+      }
+      EXPECT_EQ(metrics["counts"]["cells"], 700) << input << init;
+    }
+    const auto plain = readJson(made("plain", input, {"--sites", "100", "--iterations", "1"}) / "metrics.json");
+    EXPECT_FALSE(plain.contains("hierarchy")) << input;
   }
 }
 
@@ -234,6 +269,14 @@ TEST_F(Planar, TooLittleMemoryIsFoundBeforehand) {
   EXPECT_EQ(outcome.exitCode, 1);
   EXPECT_THAT(outcome.err, HasSubstr("use fewer sites"));
   EXPECT_FALSE(std::filesystem::exists(folder_ / "out"));
+  // Less by far suffices for 300 random sites, but not for the samples of edge-collapsing.
+  EXPECT_EQ(run({"tessellate", "shape2d:square", "-o", folder_ / "out", "--sites", "300", "--memory-limit", "1MB",
+                 "--init", "greedy-edge-collapse"})
+                .exitCode,
+            1);
+  EXPECT_EQ(
+      run({"tessellate", "shape2d:square", "-o", folder_ / "out", "--sites", "300", "--memory-limit", "1MB"}).exitCode,
+      0);
 }
 
 }  // namespace

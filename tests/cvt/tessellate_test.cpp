@@ -277,7 +277,7 @@ TEST(Tessellate, NeedsMemory) {
   TessellateOptions options;
   options.sites = 1000;
   options.iterations = 0;
-  options.memoryLimit = estimatedMemory(1000) - 1;
+  options.memoryLimit = estimatedMemory(options) - 1;
   try {
     tessellate(*implicit::sphere(1), {}, options, {});
     ADD_FAILURE() << "no error";
@@ -285,8 +285,24 @@ TEST(Tessellate, NeedsMemory) {
     EXPECT_THAT(error.what(), HasSubstr("1000 sites"));
     EXPECT_THAT(error.what(), HasSubstr("fewer sites"));
   }
-  options.memoryLimit = estimatedMemory(1000);
+  options.memoryLimit = estimatedMemory(options);
   EXPECT_EQ(tessellate(*implicit::sphere(1), {}, options, {}).complex.cellCount, 1000);
+}
+
+TEST(Tessellate, EstimatesMemoryByTheSitesThatThereAre) {
+  TessellateOptions options;
+  options.sites = 1000;
+  const std::uint64_t ofThousand = estimatedMemory(options);
+  options.initialization = Initialization::given;
+  options.given.resize(4000);
+  EXPECT_EQ(estimatedMemory(options), 4 * ofThousand);
+  // Measured: 8.3 kB a site.
+  options.initialization = Initialization::greedyEdgeCollapse;
+  EXPECT_GT(estimatedMemory(options), 1000U * 8300U);
+  options.initialization = Initialization::random;
+  options.density.kind = DensityKind::boundary;
+  // Measured with the finest grid: 280 MB.
+  EXPECT_GT(estimatedMemory(options), ofThousand + 280'000'000U);
 }
 
 TEST(Tessellate, CanBeCancelled) {

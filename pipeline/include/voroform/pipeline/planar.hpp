@@ -45,8 +45,8 @@ struct PlanarOptions : cvt::SiteOptions {
   std::uint64_t memoryLimit = 0;
 };
 
-// Peak memory in bytes that tessellatePlanar and writePlanarResults are estimated to take for n sites.
-std::uint64_t estimatedPlanarMemory(Index sites);
+// Every violation of the options, as sentences naming field, value and rule; empty if there is none.
+std::vector<std::string> validate(const PlanarOptions& options);
 
 // All that is measured on a tessellation and its region.
 struct PlanarMeasurement {

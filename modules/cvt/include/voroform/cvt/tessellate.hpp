@@ -59,8 +59,19 @@ TessellateResult tessellateSites(const OptimizedSites<3>& optimized, const impli
 TessellateResult tessellate(const implicit::ImplicitFunction& f, const Frame& frame, const TessellateOptions& options,
                             const RunContext& context);
 
-// Peak memory in bytes that tessellate is estimated to take for n sites.
-std::uint64_t estimatedMemory(Index sites);
+// The number of sites that a run starts with: of `given` ones, or as many as the options ask for.
+Index siteCount(const SiteOptions& options, std::size_t given);
+// What a run takes of memory, in the plane or in space, in bytes.
+struct MemoryCost {
+  std::uint64_t perSite = 0;  // with random sites; greedy edge-collapsing needs a multiple, for its samples
+  std::uint64_t density = 0;  // 0: there is none, or it takes nothing
+};
+std::uint64_t estimatedMemory(const SiteOptions& options, Index sites, const MemoryCost& cost);
+// Throws EnvironmentError if that is more than the limit, in bytes; 0: usableMemory().
+void requireMemory(const SiteOptions& options, Index sites, const MemoryCost& cost, std::uint64_t limit);
+
+// Peak memory in bytes that tessellate is estimated to take.
+std::uint64_t estimatedMemory(const TessellateOptions& options);
 // Throws EnvironmentError if that is more than the limit. tessellate checks it too; a caller that makes the form first
 // can so fail before.
 void requireMemory(const TessellateOptions& options);
