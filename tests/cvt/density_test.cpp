@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <tuple>
 #include <vector>
 
 #include "support/voronoi_sites.hpp"
@@ -39,14 +40,13 @@ TEST(Density, GoesWithTheInversePowerOfCellSize) {
   const auto size2 = densityOf<2>([](const Vec2& p) { return p.x(); }, 4);
   EXPECT_DOUBLE_EQ(size2->value({2, 0}), 1.0 / 16);
   EXPECT_DOUBLE_EQ(size2->siteDensity({2, 0}), 1.0 / 4);
-  EXPECT_DOUBLE_EQ(size2->least(), 1.0 / 256);
   const auto size3 = densityOf<3>([](const Vec3& p) { return p.x(); }, 4);
   EXPECT_DOUBLE_EQ(size3->value({2, 0, 0}), 1.0 / 32);
   EXPECT_DOUBLE_EQ(size3->siteDensity({2, 0, 0}), 1.0 / 8);
-  EXPECT_DOUBLE_EQ(size3->least(), 1.0 / 1024);
   // Clamped to the bounds.
-  EXPECT_DOUBLE_EQ(size3->value({0.5, 0, 0}), size3->most());
-  EXPECT_DOUBLE_EQ(size3->value({5, 0, 0}), size3->least());
+  EXPECT_DOUBLE_EQ(size2->value({5, 0}), 1.0 / 256);
+  EXPECT_DOUBLE_EQ(size3->value({0.5, 0, 0}), 1);
+  EXPECT_DOUBLE_EQ(size3->value({5, 0, 0}), 1.0 / 1024);
 }
 
 TEST(Density, RefusesBadOptions) {
@@ -88,6 +88,27 @@ TEST(BoundaryDensity, TakesItsWidthFromTheCellSize) {
   EXPECT_LT(automatic->relativeSize({0.8, 0, 0}), 2.9);
 }
 
+TEST(BoundaryDensity, TakesAnyWidth) {
+  // Wider than the forms: a grid as coarse as that would miss them.
+  const auto ball = implicit::sphere(1);
+  const auto plate = implicit::box(Vec3(2, 2, 0.05));
+  for (const double width : {0.01, 2.0, 20.0, 1e6}) {
+    const auto inBall = makeDensity(*ball, {DensityKind::boundary, 3, width}, 1, {});
+    const auto inPlate = makeDensity(*plate, {DensityKind::boundary, 3, width}, 1, {});
+    // Depths are off by less than a spacing of the finer of the two grids' bounds.
+    const auto sizeAt = [&](double depth) {
+      const double t = std::min(depth / width, 1.0);
+      return 1 + 2 * t * t * (3 - 2 * t);
+    };
+    for (const auto& [size, depth, spacing] :
+         {std::tuple(inBall->relativeSize({0.1, 0, 0}), 0.9, 2.0 / kFewestIntervals),
+          std::tuple(inPlate->relativeSize({0.1, 0.2, 0}), 0.025, 0.05 / 4)}) {
+      EXPECT_GE(size, sizeAt(depth - spacing)) << width;
+      EXPECT_LE(size, sizeAt(depth + spacing)) << width;
+    }
+  }
+}
+
 TEST(BoundaryDensity, OfARegionIsExact) {
   const mesh::PlanarRegion region = mesh::squareRegion();
   const auto density = makeDensity(region, {DensityKind::boundary, 2, 4}, 1);
@@ -101,6 +122,8 @@ TEST(CurvatureDensity, GivesBallsOneSizeAndEllipsoidsTheirCurvature) {
   const auto sphere = implicit::sphere(1);
   const auto ofSphere = makeDensity(*sphere, {DensityKind::curvature, 3, 0}, 0.1, {});
   for (const double x : {0.2, 0.5, 0.9}) EXPECT_NEAR(ofSphere->relativeSize({x, 0, 0}), 1, 0.02);
+  // Cells larger than the form, too.
+  EXPECT_NEAR(makeDensity(*sphere, {DensityKind::curvature, 3, 0}, 5, {})->relativeSize({0.5, 0, 0}), 1, 0.02);
 
   // An ellipsoid's pole of the semi-axis a has the curvatures a/b² and a/c².
   const Vec3 semiAxes(1, 0.7, 0.5);
@@ -129,6 +152,16 @@ TEST(DensitySites, LieAsDenselyAsTheDomainWants) {
   const auto left = std::count_if(sites.begin(), sites.end(), [](const Vec2& p) { return p.x() < 0; });
   // Binomial with p = 0.8: σ = 57.
   EXPECT_NEAR(static_cast<double>(left), 16000, 5 * 57);
+}
+
+TEST(DensityEnergy, NoSiteMayLeaveTheDomainsBox) {
+  const mesh::PlanarRegion region = mesh::squareRegion();
+  const PlanarDomain plane(region);
+  auto sites = randomSites<2>(plane, 20, 1, {});
+  sites[7] = plane.siteBox().max() + Vec2(1, 0);
+  EXPECT_THROW(plane.evaluate(sites, {}), MethodError);
+  EXPECT_THROW(plane.evaluateGrown(sites, 0.1, {}), MethodError);
+  EXPECT_THROW(plane.graph(sites, {}), MethodError);
 }
 
 double energyOf(const Domain<2>& domain, const std::vector<Vec2>& sites) { return domain.evaluate(sites, {}).energy; }

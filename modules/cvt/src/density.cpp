@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <utility>
 
 #include "surface_grid.hpp"
@@ -16,8 +17,10 @@ constexpr std::size_t kGrain = 256;
 // Nodes of the grid along the width of the boundary's band, and along a cell for the curvature.
 constexpr double kNodesPerWidth = 8;
 constexpr double kNodesPerCell = 2;
-// Normals for the curvature are compared this far apart to either side, in spacings of the grid: forms are often rough
-// on smaller scales.
+// The grid has at least so many intervals across the form's shortest side, or it would miss plates.
+constexpr double kIntervalsAcross = 4;
+// Normals for the curvature are compared a cell's size to either side, and at least so many spacings of the grid: forms
+// are often rough on smaller scales.
 constexpr double kCurvatureStep = 2;
 // The share of surface points that are curved less than κ₀.
 constexpr double kCurvatureRank = 0.95;
@@ -37,9 +40,11 @@ double widthOf(const DensityOptions& options, double cellSize) {
   return options.width > 0 ? options.width : kDefaultWidth * cellSize;
 }
 
-// No finer than kMostNodes allow.
 double gridSpacing(const implicit::ImplicitFunction& f, double wanted) {
-  return std::max(wanted, f.bounds().sizes().maxCoeff() / kMostNodes);
+  const Vec3 sizes = f.bounds().sizes();
+  const double longest = sizes.maxCoeff();
+  const double coarsest = std::min(longest / kFewestIntervals, sizes.minCoeff() / kIntervalsAcross);
+  return std::max(std::min(wanted, coarsest), longest / kMostIntervals);
 }
 
 DensityPtr<3> boundaryDensityOf(const implicit::ImplicitFunction& f, double ratio, double width,
@@ -72,7 +77,7 @@ double curvatureAt(const implicit::ImplicitFunction& f, const Vec3& p, double st
 DensityPtr<3> curvatureDensityOf(const implicit::ImplicitFunction& f, double ratio, double cellSize,
                                  const RunContext& context) {
   const SurfaceGrid surface = surfaceGrid(f, gridSpacing(f, cellSize / kNodesPerCell), context);
-  const double step = kCurvatureStep * surface.grid.spacing;
+  const double step = std::max(cellSize, kCurvatureStep * surface.grid.spacing);
   std::vector<double> curvatures(surface.points.size());
   parallelFor(context, curvatures.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) curvatures[k] = curvatureAt(f, surface.points[k], step);
@@ -107,7 +112,7 @@ namespace {
 // s^(−(M+2)), s clamped to [1, ratio].
 template <int M>
 double densityOfSize(double size, double ratio) {
-  const double inverse = 1 / std::min(std::max(size, 1.0), ratio);
+  const double inverse = 1 / std::clamp(size, 1.0, ratio);
   const double squared = inverse * inverse;
   return M == 2 ? squared * squared : squared * squared * inverse;
 }
@@ -133,11 +138,6 @@ void Density<M>::values(std::span<const Vec<M>> points, std::span<double> out) c
 template <int M>
 double Density<M>::siteDensity(const Vec<M>& p) const {
   return std::pow(relativeSize(p), -M);
-}
-
-template <int M>
-double Density<M>::least() const {
-  return std::pow(ratio_, -(M + 2));
 }
 
 const char* toString(DensityKind kind) {

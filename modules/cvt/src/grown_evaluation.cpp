@@ -1,19 +1,12 @@
 // Energies in domains grown by a layer on their boundary.
 #include <array>
 #include <cmath>
-#include <string>
 #include <utility>
 #include <vector>
 
-#include "gather.hpp"
-#include "voroform/core/error.hpp"
-#include "voroform/cvt/energy.hpp"
+#include "clipped_sites.hpp"
 #include "voroform/cvt/implicit_domain.hpp"
 #include "voroform/cvt/planar_domain.hpp"
-#include "voroform/voronoi/clip.hpp"
-#include "voroform/voronoi/diagram.hpp"
-#include "voroform/voronoi/planar.hpp"
-#include "voroform/voronoi/weighted_moments.hpp"
 
 namespace voroform::cvt {
 
@@ -94,67 +87,30 @@ std::vector<Layer<2>> layers(const Domain<2>& domain, const voronoi::PlanarDiagr
 }
 
 template <int M>
-Evaluation<M> grown(std::span<const Vec<M>> sites, voronoi::WeightedMoments<M> cells,
-                    const std::vector<Layer<M>>& layers, const RunContext& context) {
-  for (std::size_t i = 0; i < layers.size(); ++i) {
-    voronoi::Moments<M>& cell = cells.moments[i];
-    cell.mass += layers[i].moments.mass;
-    cell.first += layers[i].moments.first;
-    cell.second += layers[i].moments.second;
-    if (!cells.volumes.empty()) cells.volumes[i] += layers[i].volume;
+Evaluation<M> grown(std::span<const Vec<M>> sites, const ClippedSites<M>& cells, const Domain<M>& domain,
+                    const Density<M>* density, double thickness, const RunContext& context) {
+  voronoi::WeightedMoments<M> moments = momentsOf(cells, density, context);
+  const std::vector<Layer<M>> added = layers(domain, cells.diagram, cells.clip, thickness);
+  for (std::size_t i = 0; i < added.size(); ++i) {
+    voronoi::Moments<M>& cell = moments.moments[i];
+    cell.mass += added[i].moments.mass;
+    cell.first += added[i].moments.first;
+    cell.second += added[i].moments.second;
+    if (density != nullptr) moments.volumes[i] += added[i].volume;
   }
-  Evaluation<M> result;
-  result.moments = std::move(cells.moments);
-  gather<M>(sites, cells.volumes, result, context);
-  return result;
+  return evaluationOf<M>(sites, cells, std::move(moments), context);
 }
 
 }  // namespace
 
 Evaluation<3> ImplicitDomain::evaluateGrown(std::span<const Vec3> sites, double thickness,
                                             const RunContext& context) const {
-  const voronoi::Diagram diagram = voronoi::buildDiagram(sites, siteBox(), context);
-  const Stopwatch watch;
-  voronoi::ClipOptions options;
-  options.cap = voronoi::CapKind::flat;
-  options.rootFinder = rootFinder_;
-  options.rootTolerance = kOptimizationRootTolerance;
-  const voronoi::ClippedDiagram clipped = voronoi::clip(diagram, f_, options, context);
-  voronoi::WeightedMoments<3> cells;
-  if (density_ != nullptr) {
-    const auto values = [&](std::span<const Vec3> points, std::span<double> out) { density_->values(points, out); };
-    cells = voronoi::weightedMoments(diagram, clipped, values, context);
-  } else {
-    cells.moments = voronoi::siteMoments(diagram, clipped, context);
-  }
-  Evaluation<3> result = grown<3>(sites, std::move(cells), layers(*this, diagram, clipped, thickness), context);
-  result.secondsDelaunay = diagram.secondsDelaunay;
-  result.secondsAfterDelaunay = diagram.secondsFlattening + watch.seconds();
-  return result;
+  return grown<3>(sites, clipSites(sites, f_, clipOptions(), context), *this, density_.get(), thickness, context);
 }
 
 Evaluation<2> PlanarDomain::evaluateGrown(std::span<const Vec2> sites, double thickness,
                                           const RunContext& context) const {
-  const Box2 box = siteBox();
-  for (std::size_t i = 0; i < sites.size(); ++i) {
-    if (!box.contains(sites[i])) {
-      throw MethodError("site " + std::to_string(i) + " lies outside the domain or is not finite");
-    }
-  }
-  const voronoi::PlanarDiagram diagram = voronoi::buildPlanarDiagram(sites, box, context);
-  const Stopwatch watch;
-  const voronoi::PlanarClip clip = voronoi::clipPlanar(diagram, region_, context);
-  voronoi::WeightedMoments<2> cells;
-  if (density_ != nullptr) {
-    const auto values = [&](std::span<const Vec2> points, std::span<double> out) { density_->values(points, out); };
-    cells = voronoi::weightedMoments(diagram, clip, values, context);
-  } else {
-    cells.moments = voronoi::planarMoments(diagram, clip, context);
-  }
-  Evaluation<2> result = grown<2>(sites, std::move(cells), layers(*this, diagram, clip, thickness), context);
-  result.secondsDelaunay = diagram.secondsDelaunay;
-  result.secondsAfterDelaunay = diagram.secondsFlattening + watch.seconds();
-  return result;
+  return grown<2>(sites, clipSites(sites, region_, context), *this, density_.get(), thickness, context);
 }
 
 }  // namespace voroform::cvt

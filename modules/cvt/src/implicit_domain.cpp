@@ -2,10 +2,9 @@
 
 #include <algorithm>
 
+#include "clipped_sites.hpp"
 #include "voroform/core/random.hpp"
 #include "voroform/cvt/energy.hpp"
-#include "voroform/voronoi/clip.hpp"
-#include "voroform/voronoi/diagram.hpp"
 
 namespace voroform::cvt {
 
@@ -22,8 +21,13 @@ bool ImplicitDomain::contains(const Vec3& p) const {
   return clearance < 0 || (clearance == 0 && f_.value(p) < 0);
 }
 
-// Quasi-random, which costs less than an evaluation.
 double ImplicitDomain::volume() const {
+  std::call_once(volumeEstimated_, [&] { volume_ = estimatedVolume(); });
+  return volume_;
+}
+
+// Quasi-random, which costs less than an evaluation.
+double ImplicitDomain::estimatedVolume() const {
   constexpr std::uint64_t kSamples = 20000;
   const Box3 box = bounds();
   std::uint64_t inside = 0;
@@ -33,30 +37,30 @@ double ImplicitDomain::volume() const {
   return static_cast<double>(std::max<std::uint64_t>(inside, 1)) / static_cast<double>(kSamples) * box.volume();
 }
 
-Evaluation<3> ImplicitDomain::evaluate(std::span<const Vec3> sites, const RunContext& context) const {
+voronoi::ClipOptions ImplicitDomain::clipOptions() const {
   voronoi::ClipOptions options;
   options.rootFinder = rootFinder_;
   options.rootTolerance = kOptimizationRootTolerance;
-  return evaluateEnergy(sites, f_, options, context, density_.get());
+  return options;
+}
+
+Evaluation<3> ImplicitDomain::evaluate(std::span<const Vec3> sites, const RunContext& context) const {
+  return evaluateEnergy(sites, f_, clipOptions(), context, density_.get());
 }
 
 SiteGraph ImplicitDomain::graph(std::span<const Vec3> sites, const RunContext& context) const {
-  voronoi::ClipOptions options;
-  options.cap = voronoi::CapKind::flat;
-  options.rootFinder = rootFinder_;
-  options.rootTolerance = kOptimizationRootTolerance;
-  const voronoi::Diagram diagram = voronoi::buildDiagram(sites, siteBox(), context);
-  const voronoi::ClippedDiagram clipped = voronoi::clip(diagram, f_, options, context);
+  const ClippedSites<3> cells = clipSites(sites, f_, clipOptions(), context);
   SiteGraph graph;
-  for (std::size_t facet = 0; facet < clipped.facetStates.size(); ++facet) {
-    const std::array<Index, 2>& pair = diagram.facetSites[facet];
-    if (clipped.facetStates[facet] != voronoi::ClippedDiagram::FacetState::outside && diagram.isReal(pair[1])) {
+  for (std::size_t facet = 0; facet < cells.clip.facetStates.size(); ++facet) {
+    const std::array<Index, 2>& pair = cells.diagram.facetSites[facet];
+    if (cells.clip.facetStates[facet] != voronoi::ClippedDiagram::FacetState::outside &&
+        cells.diagram.isReal(pair[1])) {
       graph.edges.push_back(pair);
     }
   }
   std::sort(graph.edges.begin(), graph.edges.end());
   graph.onBoundary.assign(sites.size(), 0);
-  for (const Index site : clipped.loopSites) graph.onBoundary[static_cast<std::size_t>(site)] = 1;
+  for (const Index site : cells.clip.loopSites) graph.onBoundary[static_cast<std::size_t>(site)] = 1;
   return graph;
 }
 

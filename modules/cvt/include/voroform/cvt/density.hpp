@@ -32,9 +32,6 @@ class Density {
   // Of sites, relative to the most there can be: ρ^(M/(M+2)), in (0, 1].
   double siteDensity(const Vec<M>& p) const;
 
-  double least() const;
-  double most() const { return 1; }
-
   static constexpr double kMostRatio = 10;
 
  private:
@@ -71,8 +68,9 @@ template <int M>
 DensityPtr<M> boundaryDensity(std::function<double(const Vec<M>&)> depth, double ratio, double width);
 
 // The density of these options for a solid that n cells of mean size `cellSize` shall fill; null for a constant one.
-// Depth and nearest surface come from a grid as fine as cells and band need, at most kMostNodes nodes along the longest
-// side: its distances are Euclidean, to points where the grid's edges meet S.
+// Depth and nearest surface come from a grid as fine as cells and band need, but with a spacing between
+// 1/kMostIntervals and 1/kFewestIntervals of the form's longest side: its distances are Euclidean, to points where the
+// grid's edges meet S.
 //
 // Curvature: the root mean square κ of S's principal curvatures (that of a sphere is 1/R, and saddles count), from
 // differences of ∇f/‖∇f‖. The distance of a triangle to S is of the order κh²; so that it is the same everywhere, s =
@@ -80,7 +78,8 @@ DensityPtr<M> boundaryDensity(std::function<double(const Vec<M>&)> depth, double
 // value of the nearest piece of S, smoothed over neighboring nodes.
 //
 // Throws UsageError on bad options, MethodError if the grid meets no surface.
-inline constexpr int kMostNodes = 256;
+inline constexpr int kFewestIntervals = 64;
+inline constexpr int kMostIntervals = 256;
 DensityPtr<3> makeDensity(const implicit::ImplicitFunction& f, const DensityOptions& options, double cellSize,
                           const RunContext& context);
 // The same in the plane; depth is exact. Throws UsageError for DensityKind::curvature: straight edges have none.

@@ -2,12 +2,14 @@
 #pragma once
 
 #include <cstdint>
+#include <mutex>
 #include <utility>
 
 #include "voroform/cvt/density.hpp"
 #include "voroform/cvt/domain.hpp"
 #include "voroform/implicit/implicit_function.hpp"
 #include "voroform/implicit/roots.hpp"
+#include "voroform/voronoi/clip.hpp"
 
 namespace voroform::cvt {
 
@@ -31,10 +33,16 @@ class ImplicitDomain final : public Domain<3> {
   SiteGraph graph(std::span<const Vec3> sites, const RunContext& context) const override;
 
  private:
+  double estimatedVolume() const;
+  voronoi::ClipOptions clipOptions() const;
+
   const implicit::ImplicitFunction& f_;
   implicit::RootFinder rootFinder_;
   std::uint64_t seed_;
   DensityPtr<3> density_;
+  // Estimated when first asked for.
+  mutable std::once_flag volumeEstimated_;
+  mutable double volume_ = 0;
 };
 
 }  // namespace voroform::cvt
