@@ -146,6 +146,7 @@ TEST(ThinParts, CapsReachTheTipOfACone) {
   // One cell holds the end of the cone from about z = −0.1 on, and no edge of the diagram meets it beyond.
   const Cone form;
   const Vec3 tip = kRotation * Vec3(0, 0, 1);
+  Index tipsOfChords = 0;
   for (const std::uint64_t seed : {1U, 2U, 3U, 4U}) {
     auto sites = testing::sitesInside(form, 300, seed);
     sites.erase(std::remove_if(sites.begin(), sites.end(),
@@ -160,8 +161,10 @@ TEST(ThinParts, CapsReachTheTipOfACone) {
       for (const Vec3& vertex : result.complex.vertices) nearest = std::min(nearest, (vertex - tip).norm());
       EXPECT_LT(nearest, 0.03) << "seed " << seed;
       EXPECT_GE(result.clipped.summary.tips, 1) << "seed " << seed;
+      tipsOfChords += clip(result.diagram, form, {.cap = cap}, {}).summary.tips;
     }
   }
+  EXPECT_GE(tipsOfChords, 1);
 }
 
 TEST(ThinParts, TwoSheetsStayApart) {
