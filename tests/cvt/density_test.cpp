@@ -7,7 +7,6 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <tuple>
 #include <vector>
 
 #include "support/voronoi_sites.hpp"
@@ -89,23 +88,19 @@ TEST(BoundaryDensity, TakesItsWidthFromTheCellSize) {
 }
 
 TEST(BoundaryDensity, TakesAnyWidth) {
-  // Wider than the forms: a grid as coarse as that would miss them.
+  // Grids as coarse as the bands would miss the forms, and one that is coarse for its length the plate.
+  constexpr double kThickness = 0.02;
   const auto ball = implicit::sphere(1);
-  const auto plate = implicit::box(Vec3(2, 2, 0.05));
-  for (const double width : {0.01, 2.0, 20.0, 1e6}) {
-    const auto inBall = makeDensity(*ball, {DensityKind::boundary, 3, width}, 1, {});
-    const auto inPlate = makeDensity(*plate, {DensityKind::boundary, 3, width}, 1, {});
-    // Depths are off by less than a spacing of the finer of the two grids' bounds.
-    const auto sizeAt = [&](double depth) {
-      const double t = std::min(depth / width, 1.0);
-      return 1 + 2 * t * t * (3 - 2 * t);
-    };
-    for (const auto& [size, depth, spacing] :
-         {std::tuple(inBall->relativeSize({0.1, 0, 0}), 0.9, 2.0 / kFewestIntervals),
-          std::tuple(inPlate->relativeSize({0.1, 0.2, 0}), 0.025, 0.05 / 4)}) {
+  const auto plate = implicit::box(Vec3(2, 2, kThickness));
+  for (const double width : {2.0, 20.0, 1e6}) {
+    const DensityOptions options{DensityKind::boundary, 3, width};
+    const auto expectSize = [&](double size, double depth, double spacing) {
+      const auto sizeAt = [&](double at) { return 1 + 2 * at * at / (width * width) * (3 - 2 * at / width); };
       EXPECT_GE(size, sizeAt(depth - spacing)) << width;
       EXPECT_LE(size, sizeAt(depth + spacing)) << width;
-    }
+    };
+    expectSize(makeDensity(*ball, options, 1, {})->relativeSize({0.1, 0, 0}), 0.9, 2.0 / kFewestIntervals);
+    expectSize(makeDensity(*plate, options, 1, {})->relativeSize({0.1, 0.2, 0}), kThickness / 2, 2.0 / kMostIntervals);
   }
 }
 
