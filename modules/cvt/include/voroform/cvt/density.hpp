@@ -68,9 +68,9 @@ template <int M>
 DensityPtr<M> boundaryDensity(std::function<double(const Vec<M>&)> depth, double ratio, double width);
 
 // The density of these options for a solid that n cells of mean size `cellSize` shall fill; null for a constant one.
-// Depth and nearest surface come from a grid as fine as cells and band need, but with a spacing between
-// 1/kMostIntervals and 1/kFewestIntervals of the form's longest side: its distances are Euclidean, to points where the
-// grid's edges meet S.
+// Depth and nearest surface come from a grid as fine as cells and band need. Its spacing is from 1/kMostIntervals to
+// 1/kFewestIntervals of the form's longest side, and at most a quarter of the shortest if the former allows. Distances
+// are Euclidean, to points where the grid's edges meet S.
 //
 // Curvature: the root mean square κ of S's principal curvatures (that of a sphere is 1/R, and saddles count), from
 // differences of ∇f/‖∇f‖. The distance of a triangle to S is of the order κh²; so that it is the same everywhere, s =
