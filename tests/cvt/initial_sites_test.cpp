@@ -9,6 +9,7 @@
 #include <atomic>
 #include <cmath>
 #include <limits>
+#include <memory>
 #include <numbers>
 #include <span>
 #include <string>
@@ -198,6 +199,46 @@ TEST(HammersleySites, AreFoundForEveryNumber) {
   EXPECT_EQ(hammersleySites<3>(ImplicitDomain(*ball), 5000, 1, {}).size(), 5000U);
   const auto torus = implicit::torus(1, 0.4);
   EXPECT_EQ(hammersleySites<3>(ImplicitDomain(*torus), 14474, 1, {}).size(), 14474U);
+}
+
+// χ² of the numbers of sites in four layers of the unit square or cube along its first axis, where cells are to have
+// these sizes relative to the smallest; against shares that go with the number of such cells, or against equal ones.
+constexpr std::array<double, 4> kSizes = {1, 1.25, 1.5, 2};
+template <int M>
+double chiSquareOfLayers(const std::vector<Vec<M>>& sites, bool graded) {
+  std::array<double, 4> found{};
+  for (const Vec<M>& site : sites) found[std::min<std::size_t>(3, static_cast<std::size_t>(4 * site.x()))] += 1;
+  const auto weight = [&](double size) { return graded ? std::pow(size, -M) : 1.0; };
+  double sum = 0;
+  for (const double size : kSizes) sum += weight(size);
+  double chiSquare = 0;
+  for (std::size_t layer = 0; layer < 4; ++layer) {
+    const double expected = static_cast<double>(sites.size()) * weight(kSizes[layer]) / sum;
+    chiSquare += (found[layer] - expected) * (found[layer] - expected) / expected;
+  }
+  return chiSquare;
+}
+
+template <int M>
+DensityPtr<M> layeredDensity() {
+  return std::make_shared<const Density<M>>(
+      [](const Vec<M>& p) { return kSizes[static_cast<std::size_t>(std::clamp(4 * p.x(), 0.0, 3.0))]; }, 2.0);
+}
+
+TEST(HammersleySites, AreThinnedInProportionToTheDensity) {
+  constexpr Index kCount = 4000;
+  // Three degrees of freedom: 99.9 % of samples at random stay below 16; a sequence's do by far.
+  const mesh::PlanarRegion region = regionWithin({{0, 0}, {1, 0}, {1, 1}, {0, 1}});
+  PlanarDomain square(region);
+  EXPECT_LT(chiSquareOfLayers<2>(hammersleySites<2>(square, kCount, 1, {}), false), 1);
+  square.setDensity(layeredDensity<2>());
+  EXPECT_LT(chiSquareOfLayers<2>(hammersleySites<2>(square, kCount, 1, {}), true), 1);
+  EXPECT_GT(chiSquareOfLayers<2>(hammersleySites<2>(square, kCount, 1, {}), false), 100);
+  const auto form = implicit::transformed(implicit::box(Vec3(1, 1, 1)), Mat3::Identity(), Vec3(0.5, 0.5, 0.5));
+  ImplicitDomain cube(*form);
+  EXPECT_LT(chiSquareOfLayers<3>(hammersleySites<3>(cube, kCount, 1, {}), false), 1);
+  cube.setDensity(layeredDensity<3>());
+  EXPECT_LT(chiSquareOfLayers<3>(hammersleySites<3>(cube, kCount, 1, {}), true), 1);
 }
 
 // In the interior each site has the same distance to as many others as the lattice's sites have.

@@ -57,7 +57,8 @@ template <int M>
 struct Thinning {
   const Domain<M>& domain;
   bool operator()(std::size_t i, const Vec<M>& p) const {
-    return radicalInverse < M == 2 ? 3 : 5 > (i) < domain.siteDensity(p);
+    constexpr std::uint64_t kBase = M == 2 ? 3 : 5;
+    return radicalInverse<kBase>(i) < domain.siteDensity(p);
   }
 };
 

@@ -102,7 +102,8 @@ class HierarchyBuilder {
         options_(options),
         optimization_(optimization),
         context_(context),
-        subdivisions_(options.subdivisions < 0 ? defaultSubdivisions<M>(count, options.rule) : options.subdivisions) {
+        subdivisions_(options.subdivisions < 0 ? defaultSubdivisions<M>(count, options.rule, options.fromLattice)
+                                               : options.subdivisions) {
     optimization_.iterations = options.coarseIterations;
     optimization_.relativeError = 0;
     if (optimization_.optimizer == Optimizer::monteCarlo) optimization_.optimizer = Optimizer::lbfgs;
@@ -157,7 +158,7 @@ class HierarchyBuilder {
       removeSites(domain_, finer, -level.inserted, context_);
     } else if (level.inserted > 0) {
       const Placement placement = matched() ? Placement::largestFirst : Placement::boundaryAtRandom;
-      insertSites(domain_, finer, level.inserted, placement, optimization_.seed, context_);
+      insertSites(domain_, finer, level.inserted, placement, left, optimization_.seed, context_);
     }
     sites = inSpatialOrder<M>(finer);
     context_.report("subdivide", 1 - (left - 1.0) / subdivisions_);
@@ -200,8 +201,9 @@ int mostSubdivisions(Index sites) {
 }
 
 template <int M>
-int defaultSubdivisions(Index sites, SubdivisionRule rule) {
+int defaultSubdivisions(Index sites, SubdivisionRule rule, bool fromLattice) {
   const int most = mostSubdivisions<M>(sites);
+  if (fromLattice) return std::min(most, 1);
   if (rule == SubdivisionRule::insertion || M == 2) return most;
   int result = std::min(most, 1);
   while (result < most && thesisCount<M>(sites, result + 1) >= kFewestCoarseSites) ++result;
@@ -225,8 +227,8 @@ Hierarchy<M> hierarchicalSites(const Domain<M>& domain, Index count, const Hiera
 
 template int mostSubdivisions<2>(Index);
 template int mostSubdivisions<3>(Index);
-template int defaultSubdivisions<2>(Index, SubdivisionRule);
-template int defaultSubdivisions<3>(Index, SubdivisionRule);
+template int defaultSubdivisions<2>(Index, SubdivisionRule, bool);
+template int defaultSubdivisions<3>(Index, SubdivisionRule, bool);
 template Hierarchy<2> hierarchicalSites<2>(const Domain<2>&, Index, const HierarchyOptions&, const OptimizeOptions&,
                                            const RunContext&);
 template Hierarchy<3> hierarchicalSites<3>(const Domain<3>&, Index, const HierarchyOptions&, const OptimizeOptions&,

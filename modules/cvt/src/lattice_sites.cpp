@@ -85,12 +85,10 @@ std::vector<Placement<3>> alignedPlacements(Placement<3> /*dimension*/) {
   return placements;
 }
 
-Mat<2> randomTurn(std::uint64_t seed, std::uint64_t k, Placement<2> /*dimension*/) {
-  return rotationOf(2 * std::numbers::pi * randomUnit(seed, RandomStream::lattice, k));
+Mat<2> randomTurn(std::uint64_t seed, Placement<2> /*dimension*/) {
+  return rotationOf(2 * std::numbers::pi * randomUnit(seed, RandomStream::orientation, 0));
 }
-Mat3 randomTurn(std::uint64_t seed, std::uint64_t k, Placement<3> /*dimension*/) {
-  return randomRotation(randomBits(seed, RandomStream::lattice, k));
-}
+Mat3 randomTurn(std::uint64_t seed, Placement<3> /*dimension*/) { return randomRotation(seed); }
 
 Mat<2> smallTurn(double angle, const Vec2& /*axis*/) { return rotationOf(angle); }
 Mat3 smallTurn(double angle, const Vec3& axis) {
@@ -101,18 +99,19 @@ Mat3 smallTurn(double angle, const Vec3& axis) {
 template <int M>
 Placement<M> placement(std::uint64_t seed, std::size_t k) {
   static const std::vector<Placement<M>> aligned = alignedPlacements(Placement<M>{});
-  const std::uint64_t key = 16 * k;
   Placement<M> result;
   if (k % 3 < 2 && k / 3 < aligned.size()) result = aligned[k / 3];
   if (k % 3 == 0 && k / 3 < aligned.size()) return result;
   const Box<M> unit(Vec<M>::Zero(), Vec<M>::Ones());
   const Box<M> cube(-Vec<M>::Ones(), Vec<M>::Ones());
-  result.offset = randomInBox(seed, RandomStream::lattice, key, unit);
+  result.offset = randomInBox(seed, RandomStream::lattice, k, unit);
+  const std::uint64_t turnSeed = randomBits(seed, RandomStream::latticeTurn, k);
   if (k % 3 == 1) {
-    const double angle = kSmallTilt * (2 * randomUnit(seed, RandomStream::lattice, key + 8) - 1);
-    result.rotation = smallTurn(angle, randomInBox(seed, RandomStream::lattice, key + 3, cube)) * result.rotation;
+    const double angle = kSmallTilt * (2 * randomUnit(turnSeed, RandomStream::latticeTurn, 0) - 1);
+    const Vec<M> axis = randomInBox(turnSeed, RandomStream::orientation, 0, cube);
+    result.rotation = smallTurn(angle, axis) * result.rotation;
   } else {
-    result.rotation = randomTurn(seed, key + 9, Placement<M>{});
+    result.rotation = randomTurn(turnSeed, Placement<M>{});
   }
   return result;
 }

@@ -163,7 +163,9 @@ void minimizeLbfgs(std::vector<Vec<M>>& sites, Progress<M>& progress) {
   double inverse = 0;
   for (const Vec<M>& site : sites) inverse += 1 / progress.domain().siteDensity(site);
   const double mass = progress.domain().volume() / inverse;
+  const std::vector<IterationRecord>& records = progress.summary().iterations;
   for (int round = 0;; ++round) {
+    const std::size_t recordsBefore = records.size();
     auto* energy = new ScaledEnergy<M>(progress, centerOf<M>(sites), std::pow(mass, 1.0 / M), mass, sites);
     const ceres::GradientProblem problem(energy);  // owns it
     AcceptedStep<M> callback(*energy, progress, round < options.reseedRounds, static_cast<Index>(sites.size()));
@@ -185,9 +187,15 @@ void minimizeLbfgs(std::vector<Vec<M>>& sites, Progress<M>& progress) {
     energy->rethrowFailure();
     sites = energy->toSites(parameters.data());
     if (callback.stop) return;
+    if (records.size() == recordsBefore) {
+      // The solver ended at once: the sites can't be evaluated, which throws here, or none of them would move.
+      const State state = stateOf(progress.evaluate(sites));
+      if (!std::isfinite(state.energy)) throw MethodError("the energy of the sites is not finite");
+      if (!progress.accept(state, static_cast<Index>(sites.size()))) progress.stalled();
+      return;
+    }
     if (!callback.wantsReseed) {
-      const std::vector<IterationRecord>& records = progress.summary().iterations;
-      if (records.empty() || records.back().rmsMove > kSearchlessRange) {
+      if (records.back().rmsMove > kSearchlessRange) {
         progress.stalled();
         return;
       }
@@ -195,7 +203,7 @@ void minimizeLbfgs(std::vector<Vec<M>>& sites, Progress<M>& progress) {
       minimizeWithoutSearch(sites, progress);
       return;
     }
-    progress.summary().reseededSites += reseed(sites, energy->acceptedMoments(sites), options.seed, round);
+    reseed(sites, energy->acceptedMoments(sites), round, progress);
     progress.restarted();
   }
 }

@@ -67,13 +67,15 @@ void minimizeWithoutSearch(std::vector<Vec<M>>& sites, Progress<M>& progress) {
   Vector lastStep;
   Vector lastGradient;
   std::vector<double> scales;
-  double least = 0;       // residual since the memory was cleared
-  double leastOfAll = 0;  // and since the start
+  double least = 0;               // residual since the memory was cleared
+  std::vector<Vec<M>> bestSites;  // of the least residual since the start
+  State best;
   for (int unimproved = 0; unimproved < kPatience; ++unimproved) {
     Evaluation<M> state;
     try {
       state = progress.evaluate(sites);
     } catch (const MethodError&) {
+      if (bestSites.empty()) throw;
       break;  // a step out of the domain or onto another site
     }
     if (progress.accept(stateOf(state), count)) return;
@@ -85,8 +87,9 @@ void minimizeWithoutSearch(std::vector<Vec<M>>& sites, Progress<M>& progress) {
       gradient.template segment<M>(M * static_cast<Index>(i)) = -state.moments[i].first / scales[i];
     }
     if (lastStep.size() > 0) memory.add(std::move(lastStep), gradient - lastGradient);
-    if (leastOfAll == 0 || state.rmsMove < leastOfAll) {
-      leastOfAll = state.rmsMove;
+    if (bestSites.empty() || state.rmsMove < best.rmsMove) {
+      bestSites = sites;
+      best = stateOf(state);
       unimproved = 0;
     }
     const bool grown = least > 0 && state.rmsMove > kGrowth * least;
@@ -101,7 +104,8 @@ void minimizeWithoutSearch(std::vector<Vec<M>>& sites, Progress<M>& progress) {
       sites[i] += lastStep.template segment<M>(M * static_cast<Index>(i)) / scales[i];
     }
   }
-  progress.stalled();
+  sites = std::move(bestSites);
+  progress.stalledAt(best, count);
 }
 
 template void minimizeWithoutSearch<2>(std::vector<Vec2>&, Progress<2>&);

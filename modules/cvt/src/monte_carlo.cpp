@@ -2,9 +2,11 @@
 // centroidal Voronoi tessellation with Monte Carlo approach").
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <utility>
 
 #include "progress.hpp"
+#include "voroform/core/error.hpp"
 #include "voroform/core/random.hpp"
 
 namespace voroform::cvt {
@@ -20,16 +22,26 @@ constexpr double kAmplitude = 0.35;
 constexpr double kDescentConvergence = 2e-3;
 constexpr int kDescentIterations = 60;
 
-// L-BFGS; its evaluations count, its iterations don't.
+// L-BFGS; its evaluations count, its iterations don't. Nothing, and the sites unmoved, if it came to sites that can't
+// be evaluated.
 template <int M>
-OptimizeSummary descend(std::vector<Vec<M>>& sites, const OptimizeOptions& options, Progress<M>& progress) {
+std::optional<OptimizeSummary> descend(std::vector<Vec<M>>& sites, const OptimizeOptions& options,
+                                       Progress<M>& progress) {
   OptimizeSummary summary;
   RunContext quiet = progress.context();
   quiet.progress = nullptr;
   Progress<M> descent(progress.domain(), options, summary, quiet);
-  minimizeLbfgs(sites, descent);
+  std::vector<Vec<M>> moved = sites;
+  bool evaluated = true;
+  try {
+    minimizeLbfgs(moved, descent);
+  } catch (const MethodError&) {
+    evaluated = false;
+  }
   progress.summary().evaluations += summary.evaluations;
   progress.summary().reseededSites += summary.reseededSites;
+  if (!evaluated) return std::nullopt;
+  sites = std::move(moved);
   return summary;
 }
 
@@ -69,7 +81,8 @@ void minimizeMonteCarlo(std::vector<Vec<M>>& sites, Progress<M>& progress) {
   for (int round = 0; round < options.perturbations && !progress.reachedRelativeError(); ++round) {
     progress.context().report("optimize", static_cast<double>(round) / options.perturbations);
     std::vector<Vec<M>> trial = perturbed(sites, best, progress, round);
-    if (!(descend(trial, rough, progress).energy < best.energy)) continue;
+    const std::optional<OptimizeSummary> descent = descend(trial, rough, progress);
+    if (!descent || !(descent->energy < best.energy)) continue;
     sites = std::move(trial);
     best = progress.evaluate(sites);
     progress.record(stateOf(best), count);
@@ -77,12 +90,12 @@ void minimizeMonteCarlo(std::vector<Vec<M>>& sites, Progress<M>& progress) {
 
   if (!progress.reachedRelativeError()) {
     std::vector<Vec<M>> polished = sites;
-    const OptimizeSummary last = descend(polished, options, progress);
-    if (last.energy <= best.energy) {
+    const std::optional<OptimizeSummary> last = descend(polished, options, progress);
+    if (last && last->energy <= best.energy) {
       sites = std::move(polished);
       progress.record(stateOf(progress.evaluate(sites)), count);
     }
-    if (last.stop == StopReason::stalled) progress.stalled();
+    if (last && last->stop == StopReason::stalled) progress.stalled();
   }
   progress.context().report("optimize", 1);
 }

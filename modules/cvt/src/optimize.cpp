@@ -27,8 +27,8 @@ void minimizeLloyd(std::vector<Vec<M>>& sites, Progress<M>& progress) {
 }  // namespace
 
 template <int M>
-Index reseed(std::vector<Vec<M>>& sites, const std::vector<voronoi::Moments<M>>& moments, std::uint64_t seed,
-             int round) {
+void reseed(std::vector<Vec<M>>& sites, const std::vector<voronoi::Moments<M>>& moments, int round,
+            Progress<M>& progress) {
   std::vector<Index> empty;
   std::vector<Index> largest;
   for (std::size_t i = 0; i < sites.size(); ++i) {
@@ -42,28 +42,32 @@ Index reseed(std::vector<Vec<M>>& sites, const std::vector<voronoi::Moments<M>>&
                       return massA != massB ? massA > massB : a < b;
                     });
   const Box<M> cube(Vec<M>::Constant(-1), Vec<M>::Constant(1));
+  const Box<M> box = progress.domain().siteBox();
   for (std::size_t k = 0; k < count; ++k) {
     const auto host = static_cast<std::size_t>(largest[k]);
     const voronoi::Moments<M>& cell = moments[host];
     const std::uint64_t key = static_cast<std::uint64_t>(round) * sites.size() + k;
-    const Vec<M> direction = randomInBox(seed, RandomStream::reseed, key, cube).stableNormalized();
-    sites[static_cast<std::size_t>(empty[k])] =
+    const Vec<M> direction = randomInBox(progress.options().seed, RandomStream::reseed, key, cube).stableNormalized();
+    const Vec<M> place =
         sites[host] + cell.first / cell.mass + kReseedOffset * std::pow(cell.mass, 1.0 / M) * direction;
+    if (!box.contains(place)) continue;
+    sites[static_cast<std::size_t>(empty[k])] = place;
+    ++progress.summary().reseededSites;
   }
-  return static_cast<Index>(count);
 }
 
 template <int M>
 void lloydStep(std::vector<Vec<M>>& sites, const Evaluation<M>& state, int& reseedRound, Progress<M>& progress) {
+  // Before the other sites move: it goes by where they are.
+  if (state.emptyCells > 0 && reseedRound < progress.options().reseedRounds) {
+    reseed(sites, state.moments, reseedRound++, progress);
+  }
   const Box<M> box = progress.domain().siteBox();
   for (std::size_t i = 0; i < sites.size(); ++i) {
     if (!(state.moments[i].mass > 0)) continue;
     // What flat caps leave of a thin part can have its centroid anywhere.
     const Vec<M> centroid = sites[i] + state.moments[i].first / state.moments[i].mass;
     if (box.contains(centroid)) sites[i] = centroid;
-  }
-  if (state.emptyCells > 0 && reseedRound < progress.options().reseedRounds) {
-    progress.summary().reseededSites += reseed(sites, state.moments, progress.options().seed, reseedRound++);
   }
 }
 
@@ -115,8 +119,8 @@ OptimizeSummary optimize(const Domain<M>& domain, std::vector<Vec<M>>& sites, co
   return summary;
 }
 
-template Index reseed<2>(std::vector<Vec2>&, const std::vector<voronoi::Moments<2>>&, std::uint64_t, int);
-template Index reseed<3>(std::vector<Vec3>&, const std::vector<voronoi::Moments<3>>&, std::uint64_t, int);
+template void reseed<2>(std::vector<Vec2>&, const std::vector<voronoi::Moments<2>>&, int, Progress<2>&);
+template void reseed<3>(std::vector<Vec3>&, const std::vector<voronoi::Moments<3>>&, int, Progress<3>&);
 template void lloydStep<2>(std::vector<Vec2>&, const Evaluation<2>&, int&, Progress<2>&);
 template void lloydStep<3>(std::vector<Vec3>&, const Evaluation<3>&, int&, Progress<3>&);
 template OptimizeSummary optimize<2>(const Domain<2>&, std::vector<Vec2>&, const OptimizeOptions&, const RunContext&);

@@ -30,7 +30,7 @@ std::vector<Vec<M>> initialSites(const Domain<M>& domain, std::span<const Vec<M>
     hierarchy.subdivisions = options.subdivisions;
     hierarchy.fromLattice = fromLattice;
     hierarchy.rule = options.subdivisionRule;
-    hierarchy.coarseIterations = std::max(hierarchy.coarseIterations, options.iterations);
+    if (M == 2) hierarchy.coarseIterations = std::max(hierarchy.coarseIterations, options.iterations);
     Hierarchy<M> result = hierarchicalSites(domain, options.sites, hierarchy, options, context);
     levels = std::move(result.levels);
     return std::move(result.sites);

@@ -68,6 +68,13 @@ class Progress {
   // A restart evaluates the state it starts from again: that is no iteration.
   void restarted() { ++summary_.restarts; }
   void stalled() { summary_.stop = StopReason::stalled; }
+  // Stalled, and the sites are back in this state: it is recorded last, but is no iteration.
+  void stalledAt(const State& state, Index siteCount) {
+    const int done = summary_.iterationsDone;
+    record(state, siteCount);
+    summary_.iterationsDone = done;
+    stalled();
+  }
 
  private:
   const Domain<M>& domain_;
@@ -76,19 +83,20 @@ class Progress {
   const RunContext& context_;
 };
 
-// Moves the sites without a cell into the largest cells, one each.
+// Moves the sites without a cell into the largest cells, one each. The moments are those of the sites where they are.
 template <int M>
-Index reseed(std::vector<Vec<M>>& sites, const std::vector<voronoi::Moments<M>>& moments, std::uint64_t seed,
-             int round);
+void reseed(std::vector<Vec<M>>& sites, const std::vector<voronoi::Moments<M>>& moments, int round,
+            Progress<M>& progress);
 
 // Moves the sites to the centroids of their cells; if cells are empty, their sites too, in the first rounds asked for.
 template <int M>
 void lloydStep(std::vector<Vec<M>>& sites, const Evaluation<M>& state, int& reseedRound, Progress<M>& progress);
 
-// Each minimizes until the progress says to stop.
+// Each minimizes until the progress says to stop. Throws MethodError if the sites can't be evaluated.
 template <int M>
 void minimizeLbfgs(std::vector<Vec<M>>& sites, Progress<M>& progress);
-// Goes on where a line search failed. The progress stalls when the residual no longer falls.
+// Goes on where a line search failed. The progress stalls when the residual no longer falls; then the sites are those
+// of the least one.
 template <int M>
 void minimizeWithoutSearch(std::vector<Vec<M>>& sites, Progress<M>& progress);
 template <int M>

@@ -61,7 +61,9 @@ std::vector<Index> byMass(const Domain<M>& domain, const std::vector<Vec<M>>& si
 
 std::vector<Index> boundaryFirst(const SiteGraph& graph, std::uint64_t seed) {
   std::vector<Index> order = allSites(graph.onBoundary.size());
-  const auto key = [&](Index i) { return randomBits(seed, RandomStream::insertion, static_cast<std::uint64_t>(i)); };
+  const auto key = [&](Index i) {
+    return randomBits(seed, RandomStream::insertionOrder, static_cast<std::uint64_t>(i));
+  };
   std::sort(order.begin(), order.end(), [&](Index a, Index b) {
     const auto boundaryA = graph.onBoundary[static_cast<std::size_t>(a)];
     const auto boundaryB = graph.onBoundary[static_cast<std::size_t>(b)];
@@ -73,8 +75,7 @@ std::vector<Index> boundaryFirst(const SiteGraph& graph, std::uint64_t seed) {
 // A point in the cell of a site: the first random one, or the one farthest from the site.
 template <int M>
 std::optional<Vec<M>> pointInCell(const Domain<M>& domain, const std::vector<Vec<M>>& sites, Index host,
-                                  std::span<const Index> neighbors, bool farthest, std::uint64_t key,
-                                  std::uint64_t seed) {
+                                  std::span<const Index> neighbors, bool farthest, std::uint64_t seed) {
   const Vec<M>& site = sites[static_cast<std::size_t>(host)];
   double reach = 0;
   for (const Index j : neighbors) reach = std::max(reach, (sites[static_cast<std::size_t>(j)] - site).norm());
@@ -83,7 +84,8 @@ std::optional<Vec<M>> pointInCell(const Domain<M>& domain, const std::vector<Vec
   std::optional<Vec<M>> best;
   double bestDistance = 0;
   for (std::uint64_t t = 0; t < kTries; ++t) {
-    const Vec<M> p = randomInBox(seed, RandomStream::insertion, key * kTries + t, box);
+    const std::uint64_t key = static_cast<std::uint64_t>(host) * kTries + t;
+    const Vec<M> p = randomInBox(seed, RandomStream::insertion, key, box);
     const double distance = (p - site).squaredNorm();
     if (distance <= bestDistance) continue;
     const bool inCell = std::none_of(neighbors.begin(), neighbors.end(), [&](Index j) {
@@ -97,23 +99,21 @@ std::optional<Vec<M>> pointInCell(const Domain<M>& domain, const std::vector<Vec
   return best;
 }
 
-// One round: at most one site a cell. Returns how many were added.
+// One round, with a seed of its own: at most one site a cell. Returns how many were added.
 template <int M>
 Index insertOnce(const Domain<M>& domain, std::vector<Vec<M>>& sites, Index count, Placement placement,
-                 std::uint64_t round, std::uint64_t seed, const RunContext& context) {
+                 std::uint64_t seed, const RunContext& context) {
   const SiteGraph graph = domain.graph(sites, context);
   const Neighbors neighbors(graph, sites.size());
   const bool largest = placement == Placement::largestFirst;
-  std::vector<Index> order = largest ? byMass(domain, sites, context) : boundaryFirst(graph, seed + round);
+  std::vector<Index> order = largest ? byMass(domain, sites, context) : boundaryFirst(graph, seed);
   if (largest) std::reverse(order.begin(), order.end());
   std::vector<std::uint8_t> blocked(sites.size(), 0);
-  const std::size_t before = sites.size();
   std::vector<Vec<M>> added;
   for (const Index host : order) {
     if (static_cast<Index>(added.size()) == count) break;
     if (blocked[static_cast<std::size_t>(host)] != 0) continue;
-    const std::uint64_t key = (round + 1) * before + static_cast<std::uint64_t>(host);
-    const auto point = pointInCell(domain, sites, host, neighbors.of(host), largest, key, seed);
+    const auto point = pointInCell(domain, sites, host, neighbors.of(host), largest, seed);
     if (!point) continue;
     added.push_back(*point);
     if (largest) {
@@ -138,17 +138,19 @@ std::vector<Vec<M>> subdivide(const Domain<M>& domain, const std::vector<Vec<M>>
 }
 
 template <int M>
-void insertSites(const Domain<M>& domain, std::vector<Vec<M>>& sites, Index count, Placement placement,
+void insertSites(const Domain<M>& domain, std::vector<Vec<M>>& sites, Index count, Placement placement, int level,
                  std::uint64_t seed, const RunContext& context) {
   std::uint64_t round = 0;
+  const auto nextSeed = [&] {
+    return randomBits(seed, RandomStream::insertion, (static_cast<std::uint64_t>(level) << 32U) + round++);
+  };
   while (count > 0 && !sites.empty()) {
-    const Index added = insertOnce(domain, sites, count, placement, round++, seed, context);
+    const Index added = insertOnce(domain, sites, count, placement, nextSeed(), context);
     if (added == 0) break;
     count -= added;
   }
   if (count == 0) return;
-  // Other points than those that a coarsest level began with.
-  const auto random = randomSites<M>(domain, count, ~seed, context);
+  const auto random = randomSites<M>(domain, count, nextSeed(), context);
   sites.insert(sites.end(), random.begin(), random.end());
 }
 
@@ -177,8 +179,10 @@ template std::vector<Vec2> subdivide<2>(const Domain<2>&, const std::vector<Vec2
                                         const RunContext&);
 template std::vector<Vec3> subdivide<3>(const Domain<3>&, const std::vector<Vec3>&, const SiteGraph&,
                                         const RunContext&);
-template void insertSites<2>(const Domain<2>&, std::vector<Vec2>&, Index, Placement, std::uint64_t, const RunContext&);
-template void insertSites<3>(const Domain<3>&, std::vector<Vec3>&, Index, Placement, std::uint64_t, const RunContext&);
+template void insertSites<2>(const Domain<2>&, std::vector<Vec2>&, Index, Placement, int, std::uint64_t,
+                             const RunContext&);
+template void insertSites<3>(const Domain<3>&, std::vector<Vec3>&, Index, Placement, int, std::uint64_t,
+                             const RunContext&);
 template void removeSites<2>(const Domain<2>&, std::vector<Vec2>&, Index, const RunContext&);
 template void removeSites<3>(const Domain<3>&, std::vector<Vec3>&, Index, const RunContext&);
 

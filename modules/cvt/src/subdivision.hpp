@@ -19,9 +19,10 @@ enum class Placement {
   largestFirst,      // largest cells first, neighbors of one that took a site left out; far from the cell's site
 };
 
-// Appends `count` sites, at most one a cell and round. Where no cell takes one they are random in the domain.
+// Appends `count` sites, at most one a cell and round. Where no cell takes one they are random in the domain. Each
+// level has random numbers of its own.
 template <int M>
-void insertSites(const Domain<M>& domain, std::vector<Vec<M>>& sites, Index count, Placement placement,
+void insertSites(const Domain<M>& domain, std::vector<Vec<M>>& sites, Index count, Placement placement, int level,
                  std::uint64_t seed, const RunContext& context);
 
 // Removes `count` < n sites with the smallest cells, no two neighbors in a round. Keeps the others' order.

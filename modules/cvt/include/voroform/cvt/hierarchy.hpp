@@ -53,10 +53,10 @@ struct Hierarchy {
 template <int M>
 int mostSubdivisions(Index sites);
 
-// These, but with the rule `matched` in space no more than leave the coarsest level some 500 sites, and one if that is
-// possible at all.
+// These, but with the rule `matched` in space no more than leave the coarsest level some 500 sites, and from a lattice
+// no more than one, as subdivision but blurs it; and one if that is possible at all.
 template <int M>
-int defaultSubdivisions(Index sites, SubdivisionRule rule);
+int defaultSubdivisions(Index sites, SubdivisionRule rule, bool fromLattice);
 
 // Initial sites for the finest level: `count` of them. The coarser levels are optimized by the given options, but for
 // `iterations` and `relativeError`, until they converge; by L-BFGS where the options ask for Monte-Carlo.

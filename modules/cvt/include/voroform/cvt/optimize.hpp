@@ -62,8 +62,9 @@ struct IterationRecord {
 
 struct OptimizeSummary {
   StopReason stop = StopReason::iterations;
-  // The first for the initial sites; one more for each restart. Of monteCarlo: the first local minimum, each lower one
-  // and the polished best.
+  // The first for the initial sites; one more for each restart; where L-BFGS went on by the gradient alone and stalled,
+  // the last for the sites of least residual since, gone back to. Of monteCarlo: the first local minimum, each lower
+  // one and the polished best.
   std::vector<IterationRecord> iterations;
   int iterationsDone = 0;    // without the states that restarts began with
   int restarts = 0;          // of L-BFGS: sites moved out of empty cells, or a line search failed

@@ -28,8 +28,8 @@ struct SiteOptions : OptimizeOptions {
   // Number of sites, at least 1; of no meaning for given ones.
   Index sites = 1000;
   Initialization initialization = Initialization::random;
-  // Of the hierarchical ones; see HierarchyOptions. Each coarser level gets as many iterations as the finest, and 50 at
-  // least.
+  // Of the hierarchical ones; see HierarchyOptions. Each coarser level gets 50 iterations; in the plane as many as the
+  // finest, if they are more.
   int subdivisions = -1;
   SubdivisionRule subdivisionRule = SubdivisionRule::matched;
 };
