@@ -123,14 +123,12 @@ Json describeMesh(const fs::path& path, const RunContext& context) {
 Json describeRegion(const std::string& input, const RunContext& context) {
   const pipeline::PlanarInput read = pipeline::planarFromInput(input, context);
   const mesh::PlanarRegion& region = read.region;
-  std::size_t holes = 0;
-  for (std::size_t r = 0; r < region.ringCount(); ++r) holes += region.isHole(r) ? 1U : 0U;
   const Vec2 low = region.bounds().min();
   const Vec2 high = region.bounds().max();
   return {{"kind", "region"},
           {"format", read.record.format},
           {"rings", region.ringCount()},
-          {"holes", holes},
+          {"holes", region.holeCount()},
           {"points", region.points().size()},
           {"area", region.area()},
           {"bounds", {{"min", {low.x(), low.y()}}, {"max", {high.x(), high.y()}}}}};

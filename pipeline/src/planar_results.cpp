@@ -9,9 +9,10 @@ namespace voroform::pipeline {
 namespace {
 
 Json regionJson(const mesh::PlanarRegion& region) {
-  std::size_t holes = 0;
-  for (std::size_t r = 0; r < region.ringCount(); ++r) holes += region.isHole(r) ? 1U : 0U;
-  return {{"area", region.area()}, {"rings", region.ringCount()}, {"holes", holes}, {"points", region.points().size()}};
+  return {{"area", region.area()},
+          {"rings", region.ringCount()},
+          {"holes", region.holeCount()},
+          {"points", region.points().size()}};
 }
 
 Json planarOptionsJson(const PlanarOptions& options) {
@@ -37,6 +38,7 @@ Json planarValidityJson(const mesh::PlanarCertificate& certificate) {
   return {{"valid", certificate.valid},
           {"closed", certificate.closed()},
           {"invalid_loops", certificate.invalidLoops},
+          {"non_finite_vertices", certificate.nonFiniteVertices},
           {"unmatched_edges", certificate.unmatchedEdges},
           {"open_vertices", certificate.openVertices},
           {"stray_edges", certificate.strayEdges},
@@ -105,7 +107,7 @@ std::vector<std::string> writePlanarResults(const PlanarInput& input, const Plan
   store.put(kCellsFile, [&](const Path& path) { writePlanarCells(path, result); });
   context.throwIfCancelled();
   mesh::PlanarSvgOptions picture;
-  picture.low = metrics::kOptimalPlanarRegularity;
+  picture.low = kOptimalRegularity<2>;
   picture.high = kPlanarScaleEnd;
   picture.label = "regularity G";
   store.put("cells.svg", [&](const Path& path) {

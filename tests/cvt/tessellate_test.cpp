@@ -105,7 +105,7 @@ TEST(Tessellate, RegularityOfABallNearsTheOptimum) {
   const auto values = metrics::regularities(mesh::cellMoments(result.complex, {}));
   const metrics::Regularity regularity = metrics::regularity(result.complex, values);
   // No partition of space into equal cells is known to beat G₃; a CVT from random sites comes within 2 %.
-  EXPECT_GT(regularity.interior.mean, metrics::kOptimalRegularity);
+  EXPECT_GT(regularity.interior.mean, kOptimalRegularity<3>);
   EXPECT_LT(regularity.interior.mean, 0.0805);
   EXPECT_GT(regularity.all.mean, 0.0785);
   EXPECT_LT(regularity.all.mean, 0.0815);

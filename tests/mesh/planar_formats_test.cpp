@@ -24,7 +24,6 @@ namespace voroform::mesh {
 namespace {
 
 using ::testing::HasSubstr;
-using ::testing::Not;
 using testing::readAll;
 using testing::TemporaryFolder;
 
@@ -177,11 +176,6 @@ TEST(PlanarSvg, FillsTheCellsByTheirValues) {
   for (const char* tick : {">0.0800<", ">0.0825<", ">0.0850<", ">0.0875<", ">≥ 0.0900<"}) {
     EXPECT_THAT(svg, HasSubstr(tick));
   }
-  EXPECT_THAT(svg, Not(HasSubstr("<circle")));
-  options.sites = true;
-  const std::string withSites = svgOf(testing::squares(2), {0, 0, 0, 0}, options);
-  EXPECT_EQ(count(withSites, "<circle"), 4U);
-  EXPECT_THAT(withSites, HasSubstr("<circle cx=\"220.00\" cy=\"620.00\""));
 }
 
 TEST(PlanarSvg, ValuesBeyondTheScale) {

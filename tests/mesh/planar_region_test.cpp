@@ -67,7 +67,9 @@ TEST(PlanarRegion, NamedRegionsHaveTheirAreas) {
   EXPECT_NEAR(disc.area(), std::numbers::pi, std::numbers::pi * kRounding);
   EXPECT_NEAR(disc.points()[0].norm(), 1, 1e-5);
 
-  EXPECT_THAT(regionNames(), ElementsAre("square", "star", "disc"));
+  EXPECT_EQ(namedRegion("square").area(), squareRegion().area());
+  EXPECT_EQ(namedRegion("star").area(), starRegion().area());
+  EXPECT_EQ(namedRegion("disc").area(), discRegion().area());
   try {
     namedRegion("heart");
     FAIL();
@@ -86,8 +88,8 @@ TEST(PlanarRegion, TurnsRingsSoThatTheInteriorLiesOnTheLeft) {
     const PlanarRegion region(rings);
     EXPECT_EQ(region.area(), 36 - 16 + 4);
     ASSERT_EQ(region.ringCount(), 3U);
+    EXPECT_EQ(region.holeCount(), 1U);
     for (std::size_t r = 0; r < 3; ++r) {
-      EXPECT_EQ(region.depth(r), static_cast<Index>(r));
       EXPECT_EQ(region.isHole(r), r == 1);
       const std::vector<Vec2> ring(region.ring(r).begin(), region.ring(r).end());
       EXPECT_EQ(testing::signedArea(ring) > 0, r != 1);

@@ -28,8 +28,8 @@ TEST(Regularities, PolyhedraOfTable31) {
   EXPECT_NEAR(regularityOf(testing::tetrahedron()), 0.1040042, kPrinted);
   EXPECT_NEAR(regularityOf(testing::block(1)), 0.0833333, kPrinted);
   EXPECT_NEAR(regularityOf(testing::truncatedOctahedron()), 0.0785433, kPrinted);
-  EXPECT_NEAR(regularityOf(testing::truncatedOctahedron()), kOptimalRegularity, 1e-13);
-  EXPECT_NEAR(kOptimalRegularity, 19 / (192 * std::cbrt(2.0)), 1e-16);
+  EXPECT_NEAR(regularityOf(testing::truncatedOctahedron()), kOptimalRegularity<3>, 1e-13);
+  EXPECT_NEAR(kOptimalRegularity<3>, 19 / (192 * std::cbrt(2.0)), 1e-16);
 
   // Octahedron: faces |x| + |y| + |z| = 1.
   std::vector<Vec3> corners;
@@ -102,7 +102,7 @@ TEST(Regularity, SplitsInteriorAndBoundaryCells) {
   EXPECT_EQ(result.interior.cells, 1);
   EXPECT_EQ(result.boundary.cells, 26);
   EXPECT_DOUBLE_EQ(result.interior.mean, 0.08);
-  EXPECT_DOUBLE_EQ(result.interior.rmse, 0.08 - kOptimalRegularity);
+  EXPECT_DOUBLE_EQ(result.interior.rmse, 0.08 - kOptimalRegularity<3>);
   EXPECT_DOUBLE_EQ(result.boundary.max, 0.5);
   EXPECT_DOUBLE_EQ(result.boundary.median, 0.1);
   EXPECT_NEAR(result.all.mean, (25 * 0.1 + 0.08 + 0.5) / 27, 1e-15);
@@ -141,9 +141,9 @@ double regularityOf(const mesh::PlanarTessellation& tessellation) {
 TEST(PlanarRegularities, RegularPolygons) {
   const Vec2 far(3e4, -2e5);
   EXPECT_NEAR(regularityOf(testing::regularPolygon(6, 2.5, Vec2::Zero())), 5 / (36 * std::sqrt(3.0)), 1e-15);
-  EXPECT_NEAR(kOptimalPlanarRegularity, 5 / (36 * std::sqrt(3.0)), 1e-16);
-  EXPECT_NEAR(regularityOf(testing::regularPolygon(6, 1e-3, Vec2::Zero())), kOptimalPlanarRegularity, 1e-15);
-  EXPECT_NEAR(regularityOf(testing::regularPolygon(6, 2.5, far)), kOptimalPlanarRegularity, 1e-10);
+  EXPECT_NEAR(kOptimalRegularity<2>, 5 / (36 * std::sqrt(3.0)), 1e-16);
+  EXPECT_NEAR(regularityOf(testing::regularPolygon(6, 1e-3, Vec2::Zero())), kOptimalRegularity<2>, 1e-15);
+  EXPECT_NEAR(regularityOf(testing::regularPolygon(6, 2.5, far)), kOptimalRegularity<2>, 1e-10);
   EXPECT_NEAR(regularityOf(testing::regularPolygon(4, 1, Vec2::Zero())), 1.0 / 12, 1e-15);
   EXPECT_NEAR(regularityOf(testing::regularPolygon(3, 1, Vec2::Zero())), std::sqrt(3.0) / 18, 1e-15);
   // The disc's is 1/(4π), approached from above with the inverse fourth power of the number of corners.
@@ -173,12 +173,12 @@ TEST(PlanarRegularity, SplitsInteriorAndBoundaryCells) {
   values[4] = 0.081;
   values[0] = 0.5;
   const Regularity result = planarRegularity(values, mesh::boundaryCells(tessellation));
-  EXPECT_EQ(result.optimal, kOptimalPlanarRegularity);
+  EXPECT_EQ(result.optimal, kOptimalRegularity<2>);
   EXPECT_EQ(result.all.cells, 9);
   EXPECT_EQ(result.interior.cells, 1);
   EXPECT_EQ(result.boundary.cells, 8);
   EXPECT_DOUBLE_EQ(result.interior.mean, 0.081);
-  EXPECT_DOUBLE_EQ(result.interior.rmse, 0.081 - kOptimalPlanarRegularity);
+  EXPECT_DOUBLE_EQ(result.interior.rmse, 0.081 - kOptimalRegularity<2>);
   EXPECT_DOUBLE_EQ(result.boundary.max, 0.5);
   EXPECT_DOUBLE_EQ(result.boundary.median, 0.1);
   EXPECT_EQ(result.interior.histogram[3], 1);

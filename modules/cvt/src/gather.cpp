@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "voroform/core/parallel.hpp"
+#include "voroform/core/regularity.hpp"
 
 namespace voroform::cvt {
 
@@ -40,10 +41,9 @@ double root(double x) {
   return M == 2 ? std::sqrt(x) : std::cbrt(x);
 }
 
-// The dimensionless second moment G of a cell about its centroid (thesis, equation 3.4), free of the units of ρ.
 template <int M>
 double regularity(const voronoi::Moments<M>& cell, double size) {
-  return (cell.second - cell.first.squaredNorm() / cell.mass) / (M * cell.mass * size * size);
+  return dimensionlessSecondMoment<M>(cell.second - cell.first.squaredNorm() / cell.mass, cell.mass, size);
 }
 
 }  // namespace
@@ -99,7 +99,7 @@ void gather(std::span<const Vec<M>> sites, std::span<const double> volumes, Eval
 
 template <int M>
 double optimalRegularity() {
-  return M == 2 ? 5 / (36 * std::sqrt(3.0)) : 19 / (192 * std::cbrt(2.0));
+  return kOptimalRegularity<M>;
 }
 
 template <int M>

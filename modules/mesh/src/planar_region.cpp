@@ -197,6 +197,12 @@ PlanarRegion::PlanarRegion(Rings rings) {
   }
 }
 
+std::size_t PlanarRegion::holeCount() const {
+  std::size_t holes = 0;
+  for (std::size_t r = 0; r < ringCount(); ++r) holes += isHole(r) ? 1U : 0U;
+  return holes;
+}
+
 bool PlanarRegion::contains(const Vec2& point) const {
   bool inside = false;
   bool onBoundary = false;
@@ -255,12 +261,6 @@ PlanarRegion discRegion() {
   std::vector<Vec2> ring;
   for (int k = 0; k < kCorners; ++k) ring.push_back(onCircle(radius, static_cast<double>(k) / kCorners));
   return fromRing(std::move(ring));
-}
-
-std::vector<std::string> regionNames() {
-  std::vector<std::string> names;
-  for (const NamedRegion& region : kNamedRegions) names.emplace_back(region.name);
-  return names;
 }
 
 PlanarRegion namedRegion(std::string_view name) {

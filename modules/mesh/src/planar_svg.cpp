@@ -21,11 +21,9 @@ constexpr double kBarHeight = 240;
 constexpr double kBarSpace = 110;  // for the bar with its numbers
 constexpr double kLabelHeight = 26;
 constexpr double kFontSize = 13;
-// Lines and dots get thinner with the cells: shares of √(area of the box / cells).
+// Lines get thinner with the cells: share of √(area of the box / cells).
 constexpr double kStrokeShare = 0.03;
-constexpr double kDotShare = 0.06;
 constexpr double kWidestStroke = 1;
-constexpr double kLargestDot = 3;
 constexpr int kTicks = 5;
 
 // From blue over light yellow to red, told apart by readers who do not see green.
@@ -81,7 +79,6 @@ class Picture {
         fixed(width) + "\" height=\"" + fixed(height) + "\" viewBox=\"0 0 " + fixed(width) + " " + fixed(height) +
         "\" font-family=\"sans-serif\">\n<rect width=\"100%\" height=\"100%\" " + "fill=\"#ffffff\"/>\n";
     addCells(text, values);
-    if (options_.sites) addSites(text);
     addBar(text);
     return text + "</svg>\n";
   }
@@ -109,16 +106,6 @@ class Picture {
         text += 'z';
       }
       text += "\"/>\n";
-    }
-    text += "</g>\n";
-  }
-
-  void addSites(std::string& text) const {
-    const std::string radius = fixed(std::min(kDotShare * cellSize_, kLargestDot));
-    text += "<g fill=\"#222222\">\n";
-    for (const Vec2& site : tessellation_.sites) {
-      text += "<circle cx=\"" + fixed(kMargin + scale_ * (site.x() - box_.min().x())) + "\" cy=\"" +
-              fixed(kMargin + scale_ * (box_.max().y() - site.y())) + "\" r=\"" + radius + "\"/>\n";
     }
     text += "</g>\n";
   }

@@ -272,10 +272,7 @@ PlanarRegion readPlanarRegion(std::istream& stream, const std::string& format, c
 PlanarRegion readPlanarRegion(const std::filesystem::path& path, const RunContext& context) {
   const std::string name = path.string();
   requireRegularFile(path);
-  std::string format = path.extension().string();
-  for (char& c : format) {
-    if (c >= 'A' && c <= 'Z') c = static_cast<char>(c - 'A' + 'a');
-  }
+  const std::string format = lowerCaseExtension(path);
   readerOf(format, name);  // a wrong extension is told before a file that cannot be opened
   std::ifstream stream = openInputFile(path);
   return readPlanarRegion(stream, format, name, context);

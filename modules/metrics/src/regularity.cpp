@@ -54,8 +54,7 @@ std::vector<double> regularities(std::span<const mesh::CellMoments> moments) {
   std::vector<double> values;
   values.reserve(moments.size());
   for (const mesh::CellMoments& cell : moments) {
-    const double root = std::cbrt(cell.volume);
-    values.push_back(cell.secondMoment / (3 * cell.volume * root * root));
+    values.push_back(dimensionlessSecondMoment<3>(cell.secondMoment, cell.volume, std::cbrt(cell.volume)));
   }
   return values;
 }
@@ -64,7 +63,7 @@ std::vector<double> regularities(std::span<const mesh::PlanarCellMoments> moment
   std::vector<double> values;
   values.reserve(moments.size());
   for (const mesh::PlanarCellMoments& cell : moments) {
-    values.push_back(cell.secondMoment / (2 * cell.area * cell.area));
+    values.push_back(dimensionlessSecondMoment<2>(cell.secondMoment, cell.area, std::sqrt(cell.area)));
   }
   return values;
 }
@@ -75,11 +74,11 @@ Regularity regularity(const mesh::PolyhedralComplex& complex, std::span<const do
     if (complex.isBoundary(f))
       onBoundary[static_cast<std::size_t>(complex.faceCells[static_cast<std::size_t>(f)][0])] = 1;
   }
-  return regularity(values, onBoundary, kOptimalRegularity);
+  return regularity(values, onBoundary, kOptimalRegularity<3>);
 }
 
 Regularity planarRegularity(std::span<const double> values, std::span<const std::uint8_t> onBoundary) {
-  return regularity(values, onBoundary, kOptimalPlanarRegularity);
+  return regularity(values, onBoundary, kOptimalRegularity<2>);
 }
 
 }  // namespace voroform::metrics

@@ -27,8 +27,7 @@ struct PlanarSvgOptions {
   // the ends' colors. low < high.
   double low = 0;
   double high = 1;
-  std::string label;   // of the color bar
-  bool sites = false;  // draw them
+  std::string label;  // of the color bar
 };
 
 // A picture: each cell filled by the color of its value, with a color bar. Coordinates have two decimals of a pixel,

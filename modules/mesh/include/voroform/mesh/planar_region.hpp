@@ -51,8 +51,7 @@ class PlanarRegion {
     return points().subspan(ringOffsets_[r], ringOffsets_[r + 1] - ringOffsets_[r]);
   }
   bool isHole(std::size_t r) const { return depths_[r] % 2 != 0; }
-  // How many other rings hold ring r.
-  Index depth(std::size_t r) const { return depths_[r]; }
+  std::size_t holeCount() const;
   Index next(std::size_t point) const { return next_[point]; }
 
   double area() const { return area_; }
@@ -68,7 +67,7 @@ class PlanarRegion {
 
   std::vector<Vec2> points_;
   std::vector<std::uint32_t> ringOffsets_ = {0};
-  std::vector<Index> depths_;
+  std::vector<Index> depths_;  // how many other rings hold the ring
   std::vector<Index> next_;
   std::shared_ptr<const EdgeTree> edges_;
   double area_ = 0;
@@ -83,9 +82,7 @@ PlanarRegion starRegion();
 // A regular polygon of 720 corners with the area π of the unit disc; its radius exceeds 1 by 6e-6.
 PlanarRegion discRegion();
 
-// The named regions of the command line: square, star, disc.
-std::vector<std::string> regionNames();
-// Throws UsageError, listing the names, for an unknown one.
+// The named regions of the command line: square, star, disc. Throws UsageError, listing the names, for an unknown one.
 PlanarRegion namedRegion(std::string_view name);
 
 // Reads .wkt (one POLYGON or MULTIPOLYGON of well-known text, also over several lines) or .xy and .txt (two numbers a

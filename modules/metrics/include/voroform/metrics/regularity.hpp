@@ -5,18 +5,14 @@
 #include <span>
 #include <vector>
 
+#include "voroform/core/regularity.hpp"
 #include "voroform/mesh/moments.hpp"
 #include "voroform/mesh/planar_moments.hpp"
 #include "voroform/mesh/polyhedral_complex.hpp"
 
 namespace voroform::metrics {
 
-// G of the best known cells (thesis 3.3): in space the truncated octahedron's 19/(192·∛2), in the plane the hexagon's
-// 5/(36·√3).
-inline constexpr double kOptimalRegularity = 0.07854328121717653;
-inline constexpr double kOptimalPlanarRegularity = 0.08018753738744804;
-
-// G(P) = (1/m) ∫_P ‖x − x̂‖² dx / |P|^((m+2)/m), x̂ the centroid and m the dimension, 3 or 2; one value a cell.
+// G of each cell.
 std::vector<double> regularities(std::span<const mesh::CellMoments> moments);
 std::vector<double> regularities(std::span<const mesh::PlanarCellMoments> moments);
 
@@ -30,7 +26,7 @@ struct RegularityStatistics {
 };
 
 struct Regularity {
-  double optimal = kOptimalRegularity;  // G_m
+  double optimal = kOptimalRegularity<3>;  // G_m
   RegularityStatistics all;
   RegularityStatistics interior;  // cells without a boundary face; in the plane, without a boundary edge
   RegularityStatistics boundary;
