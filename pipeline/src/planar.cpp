@@ -51,17 +51,9 @@ Index dropEmptyCells(mesh::PlanarTessellation& tessellation) {
 }
 
 void warnOfLosses(const PlanarResult& result, const RunContext& context) {
-  if (result.emptySites > 0) {
-    context.warn(
-        std::to_string(result.emptySites) +
-        (result.emptySites == 1 ? " site ended without a cell and was" : " sites ended without a cell and were") +
-        " dropped: some parts of the region are thinner than the cell size; more sites help");
-  }
-  if (!result.measurement.certificate.valid) {
-    std::string problems;
-    for (const std::string& problem : result.measurement.certificate.problems) problems += "; " + problem;
-    context.warn("the certificate of validity failed" + problems);
-  }
+  warnOfEmptySites(result.emptySites, "region", context);
+  const mesh::PlanarCertificate& certificate = result.measurement.certificate;
+  if (!certificate.valid) warnOfProblems(certificate.problems, context);
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ void drawPanel(SvgDrawing& drawing, const std::vector<Curve>& curves, double lef
   drawing.text(left + kLeft + width / 2, 24, title, 13);
   drawing.line(left + kLeft, kTop, left + kLeft, kTop + height);
   drawing.line(left + kLeft, kTop + height, left + kLeft + width, kTop + height);
-  drawing.text(left + kLeft + width / 2, kTop + height + 38, "iterations", 11);
+  drawing.text(left + kLeft + width / 2, kTop + height + 38, "iterations, restarts counted", 11);
   for (double tick = 1; tick < static_cast<double>(most); tick *= 10) {
     drawing.line(placeX(tick), kTop + height, placeX(tick), kTop + height + 4);
     drawing.text(placeX(tick), kTop + height + 18, shortNumber(tick), 10);

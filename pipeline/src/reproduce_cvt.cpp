@@ -11,12 +11,13 @@
 #include "rank_records.hpp"
 #include "voroform/core/error.hpp"
 #include "voroform/cvt/implicit_domain.hpp"
-#include "voroform/cvt/planar_domain.hpp"
 #include "voroform/cvt/tessellate.hpp"
 #include "voroform/implicit/shapes.hpp"
 #include "voroform/mesh/moments.hpp"
 #include "voroform/metrics/regularity.hpp"
 #include "voroform/pipeline/form.hpp"
+#include "voroform/pipeline/planar.hpp"
+#include "voroform/pipeline/rank_statistics.hpp"
 #include "voroform/pipeline/site_options.hpp"
 
 namespace voroform::pipeline {
@@ -107,20 +108,13 @@ void addSummary(Outcome& outcome, const Row& row, cvt::SiteSummary summary) {
   outcome.summary = std::move(summary);
 }
 
-Outcome runPlanar(const Row& row, const cvt::SiteOptions& options, const RunContext& context) {
-  const mesh::PlanarRegion region = mesh::namedRegion(row.dataSet);
-  const cvt::PlanarDomain domain(region);
-  cvt::OptimizedSites<2> optimized = cvt::optimizeSites<2>(domain, {}, options, context);
-  std::vector<double> values;
-  for (const voronoi::Moments<2>& cell : domain.evaluate(optimized.sites, context).moments) {
-    if (cell.mass > 0) {
-      values.push_back((cell.second - cell.first.squaredNorm() / cell.mass) / (2 * cell.mass * cell.mass));
-    }
-  }
+Outcome runPlanar(const Row& row, const cvt::SiteOptions& sites, const RunContext& context) {
+  PlanarOptions options;
+  static_cast<cvt::SiteOptions&>(options) = sites;
+  PlanarResult result = tessellatePlanar(planarFromInput("shape2d:" + row.dataSet, context), options, context);
   Outcome outcome;
-  const std::vector<std::uint8_t> interior(values.size(), 0);
-  addRegularity(outcome, metrics::planarRegularity(values, interior).all);
-  addSummary(outcome, row, std::move(optimized.summary));
+  addRegularity(outcome, result.measurement.regularity.all);
+  addSummary(outcome, row, std::move(result.summary));
   return outcome;
 }
 
@@ -194,12 +188,6 @@ class CvtRunner {
   std::map<std::string, Form> forms_;
 };
 
-double medianOf(std::vector<double> values) {
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
-}
-
 void fill(ReproducedFigure& figure, const std::vector<Outcome>& outcomes) {
   std::string criterion = figure.published.criterion;
   if (criterion.starts_with("relative error")) criterion = "relative error";
@@ -212,11 +200,23 @@ void fill(ReproducedFigure& figure, const std::vector<Outcome>& outcomes) {
     }
     values.push_back(place->second);
   }
-  figure.ours = medianOf(values);
+  figure.ours = quantile(values, 0.5);
   if (values.size() > 1) {
     figure.lowest = *std::min_element(values.begin(), values.end());
     figure.highest = *std::max_element(values.begin(), values.end());
   }
+}
+
+// How many runs stand behind the figures.
+std::string seedsRemark(const Reproduction& result) {
+  std::size_t once = 0;
+  std::size_t ofSeeds = 0;
+  for (const ReproducedFigure& figure : result.figures) {
+    if (figure.failure.empty()) ++(std::isnan(figure.lowest) ? once : ofSeeds);
+  }
+  if (ofSeeds == 0) return "each figure is of one run";
+  return "of " + std::to_string(result.options.seeds) + " seeds the median, the lowest and the highest value" +
+         (once > 0 ? "; a figure without these two is of one run" : "");
 }
 
 std::string nameOf(const ReproducedFigure& figure) {
@@ -274,11 +274,10 @@ void reproduceCvts(const std::vector<PublishedFigure>& published, Reproduction& 
     fill(reproduced, runner.outcomes(rowOf(figure)));
     result.figures.push_back(std::move(reproduced));
   }
-  result.remarks.push_back(
-      "G in units of 10⁻², its root mean square error in 10⁻³; of " + std::to_string(result.options.seeds) +
-      " seeds the median, the lowest and the highest value. L-BFGS until ‖g‖/‖X‖ < 1e-10, at most " +
-      std::to_string(result.options.iterations.value_or(kCvtIterations)) +
-      " iterations. In space with the caps of cvt4.");
+  result.remarks.push_back("G in units of 10⁻², its root mean square error in 10⁻³; " + seedsRemark(result) +
+                           ". L-BFGS until ‖g‖/‖X‖ < 1e-10, at most " +
+                           std::to_string(result.options.iterations.value_or(kCvtIterations)) +
+                           " iterations. In space with the caps of cvt4.");
   addVerdict(result);
 }
 

@@ -35,23 +35,14 @@ void warnOfLosses(const Measurement& measurement, const RunContext& context) {
     context.warn(percent(fidelity.missedShare) +
                  " of the solid's inside is held by no cell: parts thinner than the cell size; more sites help");
   }
-  if (!measurement.certificate.valid) {
-    std::string problems;
-    for (const std::string& problem : measurement.certificate.problems) problems += "; " + problem;
-    context.warn("the certificate of validity failed" + problems);
-  }
+  if (!measurement.certificate.valid) warnOfProblems(measurement.certificate.problems, context);
 }
 
 }  // namespace
 
 void warnOfClipping(const cvt::TessellateSummary& summary, const RunContext& context) {
   const voronoi::ClipSummary& clip = summary.clip;
-  if (summary.emptySites > 0) {
-    context.warn(
-        std::to_string(summary.emptySites) +
-        (summary.emptySites == 1 ? " site ended without a cell and was" : " sites ended without a cell and were") +
-        " dropped: some parts of the solid are thinner than the cell size; more sites help");
-  }
+  warnOfEmptySites(summary.emptySites, "solid", context);
   if (share(clip.multiLoopCells, clip.boundaryCells) > kMultiLoopShareWarning) {
     context.warn(std::to_string(clip.multiLoopCells) + " of " + std::to_string(clip.boundaryCells) +
                  " boundary cells are cut by the surface more than once: sheets or gaps thinner than the cell size; "

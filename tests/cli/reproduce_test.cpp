@@ -17,6 +17,7 @@ namespace {
 using testing::AllOf;
 using testing::ElementsAre;
 using testing::HasSubstr;
+using testing::Not;
 
 TEST(Reproduce, TableOfBodiesAgreesInAllDigits) {
   const TemporaryFolder folder;
@@ -99,6 +100,25 @@ TEST(Reproduce, StandsInForWhatCannotBeHad) {
       EXPECT_NEAR(figure["ours"].get<double>(), 8.3, 0.4);  // as published, times 100
       EXPECT_NEAR(figure["published_ratio_to_mc"].get<double>(), 8.18 / 19.30, 1e-12);
     }
+  }
+}
+
+TEST(Reproduce, SaysOfHowManyRunsAFigureIs) {
+  const TemporaryFolder folder;
+  const auto remark = [&](const std::string& table, const std::string& dataSet, const std::string& seeds) {
+    const Outcome outcome =
+        run({"reproduce", table, "-o", folder / "out", "--data-sets", dataSet, "--iterations", "1", "--seeds", seeds});
+    EXPECT_EQ(outcome.exitCode, 0) << outcome.err;
+    return readJson(folder / "out/reproduce.json")["remarks"][0].get<std::string>();
+  };
+  EXPECT_THAT(remark("figure-3.8", "square", "2"),
+              AllOf(HasSubstr("each figure is of one run"), Not(HasSubstr("median"))));
+  // The lattice's row is of one run.
+  EXPECT_THAT(remark("4.4", "square", "2"),
+              AllOf(HasSubstr("of 2 seeds the median"), HasSubstr("without these two is of one run")));
+  const auto json = readJson(folder / "out/reproduce.json");
+  for (const auto& figure : json["figures"]) {
+    EXPECT_EQ(figure["lowest"].is_null(), figure["method"] == "lattice") << figure.dump();
   }
 }
 

@@ -38,8 +38,8 @@ struct ReproduceOptions {
   std::vector<std::string> dataSets;    // the thesis's names; empty: all of the table
   // At most; 10 if not given, in the tables of chapters 3 and 4 kCvtIterations.
   std::optional<int> iterations;
-  // Of the tables of chapters 3 and 4: seeds from the first on, of which the median is taken where the initial sites are
-  // random (thesis, section 4.1.4).
+  // Of the tables of chapters 3 and 4: seeds from the first on, of which the median is taken where the initial sites
+  // are random (thesis, section 4.1.4).
   int seeds = 10;
   double delaunayTimeLimit = 600;  // seconds; 0: none
   std::uint64_t seed = 0;
@@ -91,7 +91,8 @@ struct Reproduction {
 // that is missing), MethodError, EnvironmentError, Cancelled.
 Reproduction reproduce(const ReproduceOptions& options, const std::filesystem::path& folder, const RunContext& context);
 
-// Writes reproduce.json, .csv and .md, and the curves if there are any (curves.csv, curves.svg): all of them or none. Returns their names.
+// Writes reproduce.json, .csv and .md, and the curves if there are any (curves.csv, curves.svg): all of them or none.
+// Returns their names.
 std::vector<std::string> writeReproduction(const Reproduction& reproduction, const std::filesystem::path& folder);
 std::string reproductionMarkdown(const Reproduction& reproduction);
 
