@@ -77,13 +77,17 @@ Json hierarchyJson(const std::vector<cvt::HierarchyLevel>& levels) {
 Json energyJson(const cvt::OptimizeSummary& summary) {
   Json steps = Json::array();
   for (const cvt::IterationRecord& record : summary.iterations) {
-    steps.push_back({{"value", record.energy}, {"rms_move", record.rmsMove}, {"evaluations", record.evaluations}});
+    steps.push_back({{"value", record.energy},
+                     {"rms_move", record.rmsMove},
+                     {"mean_regularity", record.meanRegularity},
+                     {"evaluations", record.evaluations}});
   }
   return {{"value", summary.energy},
           {"optimal", summary.optimalEnergy},
           {"relative_error", summary.relativeError},
           {"iterations", summary.iterationsDone},
           {"restarts", summary.restarts},
+          {"rejected_steps", summary.rejectedSteps},
           {"evaluations", summary.evaluations},
           {"stop", cvt::toString(summary.stop)},
           {"history", std::move(steps)}};
