@@ -1,5 +1,5 @@
-#include "voroform/cvt/initial_sites.hpp"
 #include "voroform/cvt/implicit_domain.hpp"
+#include "voroform/cvt/initial_sites.hpp"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>

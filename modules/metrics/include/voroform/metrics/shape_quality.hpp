@@ -34,7 +34,7 @@ struct QualityStatistics {
   std::int64_t elements = 0;
   std::array<double, 4> mean = {};   // of criteria 1 … 4
   std::array<double, 4> worst = {};  // smallest of 1, 3 and 4, largest of 2
-  std::int64_t slivers = 0;  // tetrahedra with a dihedral angle below kSliverAngle; 0 for triangles
+  std::int64_t slivers = 0;          // tetrahedra with a dihedral angle below kSliverAngle; 0 for triangles
 };
 inline constexpr double kSliverAngle = 10;  // degrees
 
