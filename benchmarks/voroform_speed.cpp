@@ -1,5 +1,5 @@
 // Speed and memory of one CVT evaluation, against CGAL's sequential Delaunay triangulation of the same sites.
-// Usage: voroform_speed ratio KITTEN.xyz | voroform_speed large | voroform_speed memory
+// Usage: voroform_speed ratio KITTEN.xyz | voroform_speed large | voroform_speed memory | voroform_speed fit
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -16,6 +16,8 @@
 #include "voroform/cvt/implicit_domain.hpp"
 #include "voroform/cvt/initial_sites.hpp"
 #include "voroform/cvt/tessellate.hpp"
+#include "voroform/voronoi/clip.hpp"
+#include "voroform/voronoi/diagram.hpp"
 
 namespace {
 
@@ -138,6 +140,43 @@ void measureMemory() {
   benchmarks::report("5", "torus 1000000: peak bytes a site of an evaluation", peakBytes() / kSites, 2000);
 }
 
+// What the fit of cvt4 adds to the final clipping, in evaluations; medians of repetitions that alternate all three.
+void measureFit() {
+  constexpr Index kSites = 225034;
+  constexpr int kRepetitions = 5;
+  RunContext context;
+  context.threads = 2;
+  const implicit::ImplicitPtr torus = implicit::torus(1, 0.4);
+  const std::vector<Vec3> sites = relaxedSites(*torus, kSites, context);
+  voronoi::ClipOptions rough;
+  rough.rootTolerance = cvt::kOptimizationRootTolerance;
+  voronoi::ClipOptions plain;
+  plain.cap = voronoi::CapKind::cvt3;
+  plain.fit = false;
+  voronoi::ClipOptions fitted = plain;
+  fitted.fit = true;
+  const voronoi::Diagram diagram = voronoi::buildDiagram(sites, cvt::siteDomain(*torus), context);
+  const auto clipSeconds = [&](const voronoi::ClipOptions& options) {
+    const Stopwatch watch;
+    voronoi::ClippedDiagram clipped = voronoi::clip(diagram, *torus, options, context);
+    const auto complex = voronoi::toComplex(diagram, clipped, *torus, {}, options, context);
+    return complex.cellCount == kSites ? watch.seconds() : -1;
+  };
+  std::vector<double> evaluations;
+  std::vector<double> unfitted;
+  std::vector<double> added;
+  for (int repetition = 0; repetition < kRepetitions; ++repetition) {
+    const Stopwatch watch;
+    cvt::evaluateEnergy(sites, *torus, rough, context);
+    evaluations.push_back(watch.seconds());
+    unfitted.push_back(clipSeconds(plain));
+    added.push_back(clipSeconds(fitted) - unfitted.back());
+  }
+  benchmarks::report("fit", "torus 225034: final clipping of cvt3, seconds", median(unfitted));
+  benchmarks::report("fit", "torus 225034: added by the fit, seconds", median(added));
+  benchmarks::report("fit", "torus 225034: added by the fit / evaluation", median(added) / median(evaluations), 1.5);
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -148,8 +187,11 @@ int main(int argc, char** argv) {
     measureLarge();
   } else if (mode == "memory") {
     measureMemory();
+  } else if (mode == "fit") {
+    measureFit();
   } else {
-    std::cerr << "usage: voroform_speed ratio KITTEN.xyz | voroform_speed large | voroform_speed memory\n";
+    std::cerr << "usage: voroform_speed ratio KITTEN.xyz | voroform_speed large | voroform_speed memory |\n"
+                 "       voroform_speed fit\n";
     return 2;
   }
   return 0;

@@ -13,3 +13,4 @@ def check(report: Report, program: Program, data: Path) -> None:
     program.benchmark("voroform_speed", "ratio", data / "kitten.xyz")
     program.benchmark("voroform_speed", "large")
     program.benchmark("voroform_speed", "memory")
+    program.benchmark("voroform_speed", "fit")

@@ -25,7 +25,9 @@ enum class RandomStream : std::uint64_t {
   lattice,
   thinning,
   generalPosition,
-  perturbation
+  perturbation,
+  insertionOrder,
+  latticeTurn
 };
 
 // 64 random bits for a key: SplitMix64's finalizer over the mixed key.
